@@ -78,7 +78,7 @@ print_package_sizes() {
         add(files[i], i)
         printf "%-24s %10d %14d %10d\n", files[i], kilobytes[files[i]], sum - kilobytes[files[i]], sum
       }
-      for (package in absent) { print "not counted: " package ", which is not installed here" > "/dev/stderr"; bad = 1 }
+      for (package in absent) { print "not counted, because it is not installed here: " package > "/dev/stderr"; bad = 1 }
       exit bad
     }'
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# A first touch: sets the machine up, then a simulated PHANTOM-class arm with a simulated hand touches
-# a scanned elephant for 10 s at 1 kHz, and draws pictures of it. If the scan is unavailable, it touches a
-# balloon, whose mesh is part of Thimble.
+# Demo: installs and builds Thimble, runs a simulated PHANTOM-class arm with a simulated hand that touches a
+# scanned elephant for 10 s at 1 kHz, and draws pictures of the run. If the scan is unavailable, the hand
+# touches a balloon, whose mesh is part of Thimble.
 #   app/demo.sh [options of `thimble run`]      for example: app/demo.sh --duration 3
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,15 +1,15 @@
 # Decides which optional parts (optional_parts.list) this build has, and writes them to the build folder:
 #   optional_parts.txt     lines "state|key|installed by|part|reason"; state: on: part of the build; missing: its packages
 #                          are not installed; off: switched off, or not for this kind of build
-#   optional_packages.txt  the packages that they were decided with; app/setup.sh configures again if these have changed
-# Including it reads THIMBLE_PACKAGES, what the system has of all parts; call thimble_write_optional_parts() after the last
-# target.
+#   optional_packages.txt  state of the packages at this configuration; app/setup.sh configures again if it has changed
+# Including this file sets THIMBLE_PACKAGES to the state of all parts on this system. Call thimble_write_optional_parts()
+# after the last target.
 set(THIMBLE_PACKAGES_FILE "${PROJECT_BINARY_DIR}/optional_packages.txt")
 execute_process(COMMAND bash "${CMAKE_CURRENT_LIST_DIR}/optional_parts.sh" state OUTPUT_VARIABLE THIMBLE_PACKAGES ERROR_QUIET)
 
-# CMake searches again for what it did not find, but keeps what it found, even if that has been removed since. Removes
-# from the cache what names a file that is gone, with all results of the same find module, and lets pkg-config be asked
-# again. Nothing that was given on the command line for a file that exists is lost.
+# CMake searches again for packages that it did not find, but keeps found ones, even if they have been removed since.
+# Removes cache entries of files that no longer exist, with all results of the same find module, and the cached results of
+# pkg-config. Entries from the command line are kept if their file exists.
 function(thimble_forget_removed_packages)
   get_cmake_property(names CACHE_VARIABLES)
   set(groups "MPI_" "_?Python_" "pybind11_")
@@ -46,8 +46,8 @@ set(THIMBLE_INSTALLER_tests "tests/run.sh")
 set(THIMBLE_INSTALLER_long "tests/run.sh --long")
 set(THIMBLE_INSTALLER_nothing "by hand")
 
-# thimble_part(KEY HAS value [OFF "reason"] [WHY "reason"]): notes a part. HAS: true if the build has it. OFF: why it is not
-# wanted. WHY: why it is missing if its packages are installed.
+# thimble_part(KEY HAS value [OFF "reason"] [WHY "reason"]): records a part. HAS: true if the build has it. OFF: reason if it
+# is switched off. WHY: reason if it is missing although its packages are installed.
 function(thimble_part key)
   cmake_parse_arguments(ARG "" "OFF;WHY" "HAS" ${ARGN})
   set(line "${THIMBLE_PART_${key}}")
@@ -87,7 +87,7 @@ function(thimble_part key)
   set_property(GLOBAL APPEND PROPERTY thimble_part_keys ${key})
 endfunction()
 
-# thimble_has_programs(OUT program...): true if all of them are found. Asked at each configuration.
+# thimble_has_programs(OUT program...): true if all of them are found. Searches at each configuration.
 function(thimble_has_programs out)
   set(all TRUE)
   foreach(program ${ARGN})
@@ -100,7 +100,7 @@ function(thimble_has_programs out)
   set(${out} ${all} PARENT_SCOPE)
 endfunction()
 
-# thimble_has_modules(OUT module...): true if Debian's Python has all of them. Looks for them without importing any.
+# thimble_has_modules(OUT module...): true if Debian's Python has all of them. Imports none of them.
 function(thimble_has_modules out)
   list(JOIN ARGN "', '" names)
   execute_process(
@@ -136,7 +136,7 @@ function(thimble_write_optional_parts)
   if(CMAKE_BUILD_TYPE STREQUAL "Release")
     set(release ON)
   endif()
-  # Why parts are not wanted in this build.
+  # Reasons why parts are switched off in this build.
   set(no_app "")
   if(NOT THIMBLE_BUILD_APP)
     set(no_app "THIMBLE_BUILD_APP is off")
@@ -149,7 +149,7 @@ function(thimble_write_optional_parts)
   elseif(NOT THIMBLE_PYTHON)
     set(no_python "THIMBLE_PYTHON is off")
   endif()
-  # Parts that have an option of their own.
+  # Parts with their own option.
   foreach(part mpi=MPI bags=BAGS web=WEB view=VIEW ros2=ROS2)
     string(REGEX MATCH "(.*)=(.*)" part "${part}")
     set(no_${CMAKE_MATCH_1} "${no_app}")
@@ -249,7 +249,7 @@ function(thimble_write_optional_parts)
   get_property(keys GLOBAL PROPERTY thimble_part_keys)
   list(REMOVE_ITEM listed ${keys})
   if(listed)
-    message(FATAL_ERROR "app/optional_parts.cmake does not decide about these parts of app/optional_parts.list: ${listed}")
+    message(FATAL_ERROR "app/optional_parts.cmake does not handle these parts of app/optional_parts.list: ${listed}")
   endif()
   get_property(text GLOBAL PROPERTY thimble_parts)
   file(WRITE "${PROJECT_BINARY_DIR}/optional_parts.txt" "${text}")

@@ -63,7 +63,7 @@ rows() {
 
 for key in ${THIMBLE_WITHOUT:-}; do
   grep -qxF "$key" <(parts | cut -d '|' -f 1) || {
-    echo "No optional part has the key '$key'; app/optional_parts.list names them." >&2
+    echo "Unknown optional part '$key'. app/optional_parts.list has the keys." >&2
     exit 2
   }
 done

@@ -22,7 +22,7 @@ packages=(
   libhdf5-dev                            # recordings
   libfmt-dev libspdlog-dev               # text with numbers, the log
   libcli11-dev                           # command line
-  libjs-three libjs-dygraphs             # for report pages that replay a touch in a browser
+  libjs-three libjs-dygraphs             # for report pages that replay a run in a browser
   libepoxy-dev libegl-dev libgl-dev      # scenes drawn with OpenGL ...
   libegl-mesa0 libgl1-mesa-dri           # ... in software if there is no graphics card
   libglfw3-dev libimgui-dev              # the window
@@ -51,18 +51,18 @@ fi
 mapfile -t missing < <(missing_packages "${packages[@]}")
 if [ ${#missing[@]} -gt 0 ]; then
   if ! command -v apt-get >/dev/null; then
-    echo "Thimble needs these Debian packages, and this system has no apt-get: ${missing[*]}" >&2
+    echo "This system has no apt-get. Install these Debian packages by hand: ${missing[*]}" >&2
     exit 3
   fi
   echo "Installing Debian packages: ${missing[*]}"
   install_packages "${missing[@]}" || {
     if [ $? = 3 ]; then
-      echo "Thimble needs Debian packages that only an administrator can install. Ask one to run:" >&2
+      echo "Thimble needs Debian packages that only an administrator can install. Ask an administrator to run:" >&2
     else
-      echo "Debian packages could not be installed; apt-get says why above. This would install them:" >&2
+      echo "Debian packages could not be installed; see the output of apt-get above. To install them, run:" >&2
     fi
     echo "  apt-get install --no-install-recommends ${missing[*]}" >&2
-    echo "Optional parts (app/optional_parts.list) may be left out: THIMBLE_WITHOUT=\"KEY...\" app/setup.sh ${*:-}" >&2
+    echo "To omit optional parts (app/optional_parts.list), run: THIMBLE_WITHOUT=\"KEY...\" app/setup.sh ${*:-}" >&2
     exit 3
   }
 fi
@@ -75,7 +75,7 @@ mkdir -p build
 run() {
   "$@" >>"$log" 2>&1 || {
     tail -n 40 "$log" >&2
-    echo "'$*' failed; the whole output is in $log." >&2
+    echo "'$*' failed; $log has the complete output." >&2
     exit 4
   }
 }

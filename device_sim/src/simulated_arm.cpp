@@ -36,11 +36,13 @@ driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::ArmModel& board
   }
   if (settings.wire.jitter_ns < 0 || !(settings.wire.loss >= 0 && settings.wire.loss < 1)) {
     return driver::Error{
-        "The simulated wire's jitter must not be negative (ns), and its loss from 0 to below 1."};
+        "The simulated wire's jitter must not be negative (ns), and its loss must be at least 0 "
+        "and below 1."};
   }
   if (!(settings.gimbal.period > 0) || !settings.gimbal.middle.allFinite() ||
       !settings.gimbal.amplitude.allFinite()) {
-    return driver::Error{"The simulated gimbal needs finite angles and a period above zero (s)."};
+    return driver::Error{
+        "The simulated gimbal requires finite angles and a period above zero (s)."};
   }
   const auto tremor = Tremor::make(settings.hand, seed);
   if (!tremor) return tremor.error();
@@ -97,7 +99,9 @@ driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver:
       arm_model(model), settings, std::move(path), seed,
       [&](const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) -> driver::Result<AnyPlant> {
         if (settings.links.named()) {
-          return driver::Error{"Links are simulated of serial arms alone; leave them out."};
+          return driver::Error{
+              "Link inertia is simulated for serial arms only. Remove the links from the arm "
+              "file."};
         }
         if (settings.drive_train.joints_rub()) {
           return as_any<AnyPlant>(RubbingLinkagePlant::make(model, settings, p_BT, p_BH));

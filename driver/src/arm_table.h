@@ -27,7 +27,7 @@ struct ArmRow {
   /// The installed arm file that the protocol implies; empty if several arms use the protocol.
   std::string_view own_file;
   /// Makes the arm of a model that uses the protocol. Null if the arm is behind a vendor's service
-  /// or library and has a link of its own.
+  /// or library and has its own link.
   std::unique_ptr<const Arm> (*make)(const ArmModel& model) = nullptr;
 
   /// Returns whether the arms report their tip pose and take forces. They then need neither a wire
@@ -54,7 +54,7 @@ THIMBLE_EXPORT std::span<const ShapeRow, std::variant_size_v<ArmGeometry>> arm_s
 /// Returns the protocol of a board. Real-time: never from the servo thread.
 ArmKind kind_of(BoardKind board) noexcept;
 
-/// Makes the arm of a model with the given protocol; null if the arm has a link of its own
+/// Makes the arm of a model with the given protocol; null if the arm has its own link
 /// (ArmRow::has_own_link). Precondition: not kUnsupported. Real-time: never from the servo thread.
 THIMBLE_EXPORT std::unique_ptr<const Arm> make_arm(ArmKind kind, const ArmModel& model);
 

@@ -89,12 +89,13 @@ Result<std::unique_ptr<Device>> Device::open(std::unique_ptr<ArmLink> link,
   if (auto checked = settings.check(); !checked) return checked.error();
   if (settings.heat.named() && !link->traits().motors) {
     return Error{
-        "The arm keeps its motors to itself, so nobody can tell how hot they are; leave "
-        "continuous_current out of its file."};
+        "This arm does not report its motor currents, so motor heat cannot be computed. Remove "
+        "continuous_current from its file."};
   }
   std::unique_ptr<Device> device(new Device(std::move(link), settings));
-  // The motors start from zero, whatever message was in flight before. An arm that sends only when
-  // asked may miss the first message while it starts up, so zero is sent again with each wait.
+  // The motors start from zero, even if another message was in flight before. An arm that sends
+  // only when asked may miss the first message while it starts up, so zero is sent again with each
+  // wait.
   constexpr int kGreetings = 10;
   constexpr int kAttempts = 100;  // reports that cannot be decoded, before giving up
   int attempt = 0;
@@ -109,12 +110,12 @@ Result<std::unique_ptr<Device>> Device::open(std::unique_ptr<ArmLink> link,
   }
   if (device->lost_) return Error{std::string(describe(Fault::kTransportLost))};
   if (device->wire_.rejected > 0) {
-    return Error{"The arm sends reports of a form that its driver does not know (" +
+    return Error{"The arm sends reports in an unknown format (" +
                  std::to_string(device->wire_.rejected) +
-                 " rejected). Check that the arm file is the one of this arm."};
+                 " rejected). Check that the arm file matches this arm."};
   }
   return Error{"The arm sent no report within " + std::to_string(timeout_ns / 1'000'000) +
-               " ms. Check its power and cable, and that no other program uses it."};
+               " ms. Check its power and cable, and close other programs that use it."};
 }
 
 Result<void> Device::activate(HomeCheck home) {
@@ -122,9 +123,9 @@ Result<void> Device::activate(HomeCheck home) {
   if (home == HomeCheck::kPassed) home_needed_ = false;
   if (home_needed_) {
     return Error{
-        "The arm was silent, or its position jumped, so its board may have restarted and count "
-        "from another pose. Put the arm into its home pose, switch it off and on there, and begin "
-        "again."};
+        "The arm was silent or its position jumped, so its board may have restarted and its "
+        "encoders may count from another pose. Put the arm into its home pose, switch it off and "
+        "on there, and restart."};
   }
   begin_activity();
   return {};
@@ -154,8 +155,8 @@ void Device::close_lost_link() noexcept {
 Result<void> Device::offer(std::unique_ptr<ArmLink> link) {
   if (link->traits() != traits_) {
     return Error{
-        "The arm that was plugged in is not the one that was pulled: its motors or what it tells "
-        "are others. Plug in the same arm, or begin a new run."};
+        "The reconnected arm differs from the one that was disconnected (motors or capabilities). "
+        "Plug in the same arm, or start a new run."};
   }
   close_lost_link();
   offered_.store(link.release(), std::memory_order_release);

@@ -27,13 +27,14 @@ Result<void> check_walls(const WallSettings& walls) {
   // Written so that NaN is refused.
   if (!(walls.min_W.array() <= walls.max_W.array()).all()) {
     return Error{
-        "The arm's workspace must have no corner beyond the opposite one; set it in the arm file."};
+        "The minimum of the arm's workspace must not exceed its maximum on any axis. Correct the "
+        "workspace in the arm file."};
   }
   if (!(walls.stiffness >= 0 && walls.stiffness <= 1e4 && walls.damping >= 0 &&
         walls.damping <= 100 && walls.beyond >= 0 && walls.beyond < HUGE_VAL)) {
     return Error{
-        "The walls of the arm's workspace need a stiffness of 0 to 10,000 N/m, a damping of 0 to "
-        "100 N s/m and a finite depth of zero or more."};
+        "The walls of the arm's workspace need a stiffness from 0 to 10,000 N/m, a damping from 0 "
+        "to 100 N s/m and a finite depth of zero or more."};
   }
   return {};
 }
@@ -43,11 +44,12 @@ Result<void> check_walls(const WallSettings& walls) {
 Result<void> DeviceSettings::check() const {
   const auto wrong = [](const char* what, const char* least = "above zero") {
     return Error{std::string("The arm's ") + what + " must be a finite number " + least +
-                 "; set it in the arm file."};
+                 ". Set it in the arm file."};
   };
   const auto loose = [](const char* what, const char* bound) {
-    return Error{std::string("The arm's ") + what + " protects nobody as it is set: it must be " +
-                 bound + "; set it in the arm file."};
+    return Error{std::string("The arm's ") + what +
+                 " is too loose to protect a person. It must be " + bound +
+                 ". Set it in the arm file."};
   };
   if (!is_limit(limits.force_max)) return wrong("force_max");
   if (!is_limit(limits.speed_max)) return wrong("speed_max");
@@ -79,13 +81,13 @@ Result<void> DeviceSettings::check() const {
   }
   if (!is_rotation(R_WB)) {
     return Error{
-        "The rotation of the arm's base is none: its columns must be of length 1, at right angles, "
-        "and right-handed, within 1e-6. Set R_WB of the device settings."};
+        "R_WB of the device settings is not a rotation. Its columns must be orthonormal and "
+        "right-handed, within 1e-6."};
   }
   if (!p_WB.allFinite() || !(p_WB.cwiseAbs().maxCoeff() <= kBaseMost)) {
     return Error{
-        "The position of the arm's base must be finite and within 10 m of the world's origin, in "
-        "metres. Set p_WB of the device settings."};
+        "p_WB of the device settings must be finite and within 10 m of the world's origin on each "
+        "axis."};
   }
   if (auto checked = check_walls(walls); !checked) return checked;
   if (!is_limit(motion.hold_most)) return wrong("hold_unchanged time");
@@ -95,11 +97,11 @@ Result<void> DeviceSettings::check() const {
   }
 
   if (energy.stage == EnergyStage::kPassivity) {
-    if (!is_limit(energy.mass)) return wrong("tip mass, which its passivity stage needs,");
+    if (!is_limit(energy.mass)) return wrong("tip mass (required by the passivity stage)");
     if (!is_limit(energy.reservoir)) return wrong("energy reservoir");
     if (!(energy.allowance >= 0)) return wrong("energy allowance", "of zero or more");
     if (!(energy.dissipation >= 0 && energy.dissipation < HUGE_VAL)) {
-      return wrong("sure damping", "of zero or more");
+      return wrong("guaranteed damping", "of zero or more");
     }
     if (!(energy.speed_floor >= 0 && energy.speed_floor < HUGE_VAL)) {
       return wrong("speed floor", "of zero or more");
@@ -109,8 +111,9 @@ Result<void> DeviceSettings::check() const {
     return wrong("slope of the energy bound");
   }
   if (energy.delay_ticks < 0 || energy.delay_ticks > EnergyGuardSettings::kDelayMost) {
-    return Error{"The energy stage of the gate knows delays of 0 to 15 ticks; the loop's is " +
-                 std::to_string(energy.delay_ticks) + "."};
+    return Error{
+        "The energy stage of the gate supports delays of 0 to 15 ticks; the delay of the loop is " +
+        std::to_string(energy.delay_ticks) + "."};
   }
   return {};
 }

@@ -141,8 +141,8 @@ Result<std::vector<FoundArm>> find_arms(const fs::path& root) {
   std::error_code missing;
   if (!fs::is_directory(devices, missing)) {
     if (!found.empty()) return found;
-    return Error{"USB devices cannot be listed: " + devices.string() +
-                 " is not there. Check that the kernel has USB and that sysfs is mounted."};
+    return Error{"Cannot list USB devices: " + devices.string() +
+                 " does not exist. Check that the kernel supports USB and that sysfs is mounted."};
   }
   for (const fs::path& device : entries(devices)) {
     const auto vendor_id = number_in<std::uint16_t>(device / "idVendor", 16);

@@ -21,7 +21,7 @@ RealTimeGrant enter_real_time(int priority) {
   grant.fifo = refused == 0;
   if (!grant.fifo) {
     grant.advice += "Real-time scheduling was refused (" + std::string(std::strerror(refused)) +
-                    "): add your user to a group with 'rtprio 80' in /etc/security/limits.d, or "
+                    "). Add your user to a group with 'rtprio 80' in /etc/security/limits.d, or "
                     "run as root; until then expect more jitter. ";
   }
   // With a finite limit, locking future pages would make later allocations fail at that limit.
@@ -31,7 +31,7 @@ RealTimeGrant enter_real_time(int priority) {
   grant.memory_locked = mlockall(unlimited ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT) == 0;
   if (!grant.memory_locked) {
     grant.advice += "Locking memory was refused (" + std::string(std::strerror(errno)) +
-                    "): allow 'memlock unlimited' for your user in /etc/security/limits.d. ";
+                    "). Allow 'memlock unlimited' for your user in /etc/security/limits.d. ";
   }
   if (!grant.advice.empty()) grant.advice.pop_back();
   return grant;
@@ -46,8 +46,8 @@ CpuLatencyRequest::CpuLatencyRequest(const std::filesystem::path& root) {
   if (file_ >= 0) close(file_);
   file_ = -1;
   advice_ = path.string() + " was refused (" + std::strerror(error) +
-            "), so the processors may sleep between ticks and wake late; `thimble doctor` says "
-            "what to do.";
+            "), so the processors may sleep between ticks and wake late. Run `thimble doctor` for "
+            "a remedy.";
 }
 
 CpuLatencyRequest::~CpuLatencyRequest() {

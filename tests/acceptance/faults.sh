@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Runs the fault matrix and writes promises and measurements as a table: fault by arm, a
-# column per phase. Results in simulated time are equal on every machine; for results on the
-# wall clock the table states only whether the promise was kept.
+# Runs the fault matrix and writes promises and measurements as a table: a row per fault and arm, a
+# column per phase. Results in simulated time are equal on every machine. For results in real time
+# the table states only whether the promise was kept.
 #   tests/acceptance/faults.sh [BUILD_DIR [OUTPUT]]    default: build/release and tests/acceptance/FAULTS.md
 #   tests/acceptance/faults.sh --check LINES           LINES: output of FaultMatrix (THIMBLE_FAULTS); fails if
 #                                           tests/acceptance/FAULTS.md differs; writes nothing
@@ -16,7 +16,7 @@ simulated_rows() {  # simulated_rows LINES
       if (!(key in seen)) { seen[key] = 1; order[++n] = key }
       if ($4 != "opening") { promise[key] = $5; limit[key] = $7 }
       value = $6
-      sub(/goes on/, "-", value)
+      sub(/goes on|continues/, "-", value)
       cell[key "|" $4] = value
     }
     END {
@@ -34,7 +34,7 @@ if [ "${1:-}" = --check ]; then
   [ $# = 2 ] || { echo "Usage: tests/acceptance/faults.sh --check LINES" >&2; exit 2; }
   diff <(sed -n '/^## In simulated time/,/^## While/p' tests/acceptance/FAULTS.md | sed -n '/^| fault/d; /^|-/d; /^|/p' | sort) \
     <(simulated_rows "$2" | sort) >&2 || {
-    echo "FAILED: tests/acceptance/FAULTS.md (<) is not what the matrix measured (>): write it anew by tests/acceptance/faults.sh, and look at what changed" >&2
+    echo "FAILED: tests/acceptance/FAULTS.md (<) differs from the measurements (>). Run tests/acceptance/faults.sh and review the changes" >&2
     exit 1
   }
   exit 0
@@ -52,20 +52,21 @@ THIMBLE_FAULTS=$lines "$build/tests/sim/test_identify" --gtest_filter='IdentifyB
     "$(realpath "$build")/tests/program/faults_table" >/dev/null || [ $? = 77 ]
 {
   cat <<'TEXT'
-# Faults: what is promised, and what was measured
+# Faults: promises and measurements
 
-Written by `tests/acceptance/faults.sh`; do not edit. The promises are data in `tests/sim/fault_promises.h`, the cells are
-`tests/sim/fault_matrix_test.cpp` (simulated time, the whole way from hand to motors), `tests/sim/identify/identify_bounds_test.cpp`,
+Written by `tests/acceptance/faults.sh`; do not edit. The promises are in `tests/sim/fault_promises.h`. The cells are measured by
+`tests/sim/fault_matrix_test.cpp` (simulated time, from the hand to the motors), `tests/sim/identify/identify_bounds_test.cpp`,
 `tests/unit/driver/vendors/*_link_test.cpp` (arms behind vendors' libraries and services) and `tests/program/faults_test.sh` (real
 processes).
 
-A number is the time in ms until no current flowed in the motors of the simulated arm, for good; behind it the cause that
-the driver named. `-` is a touch that went on, every force sent within the arm's limit. In the column `limit`: no later than so
-many ms. "the arm switches off": the board's own watchdog (100 ms, mbed boards 500 ms), for the driver cannot know. Whether a Falcon has a
-watchdog is not known: the simulated one of these rows has none, and where only the arm could switch its motors off nothing
-is promised ("goes on" as `-`: the motors still pulled when the watching ended). Free motion has no current
-to begin with. "within the limit" is what can be promised of bytes that look like a touch: no wire of these arms has a
-checksum. Forces on the way out that a cable has changed are the board's business: it takes no current beyond its range.
+A number is the time in ms until the currents in the motors of the simulated arm have ended permanently; the fault that the
+driver reported follows it. `-`: the contact continued, and every sent force was within the arm's limit. The column `limit` is the
+maximum time in ms. "the arm switches off": the driver cannot detect the fault, and the board's own watchdog acts (100 ms, mbed
+boards 500 ms). It is not known whether a Falcon has a watchdog. The simulated Falcon of these rows has none. If only the arm
+could switch its motors off, nothing is promised, and `-` means that the motors still pulled at the end of the observation. In
+free motion there is no current at the start. "within the limit" is all that can be promised for corrupt bytes that look
+valid, because no wire of these arms has a checksum. The board must handle forces that the cable has corrupted: it accepts no
+current beyond its range.
 
 ## In simulated time
 
@@ -78,7 +79,7 @@ TEXT
 ## While an arm is identified, in simulated time
 
 Arms with hidden constants (2 for each row, 40 in the long form). Every command of `thimble identify` counts, from opening to end,
-as it was asked for and as it was sent.
+both as requested and as sent.
 
 | fault | promise | result |
 |---|---|---|
@@ -88,9 +89,9 @@ TEXT
 
 ## Behind a vendor's library or service, on the wall clock
 
-Over libraries and a service of our own that stand in for the vendors'. "more with a force": messages with a force that still go out
-once the fault is there, before zero does for good; the cause latches. What a library or service that hangs does with the
-last force is its own business: Force Dimension's arm is asked to let it go after 20 ms.
+Mock libraries and a mock service replace those of the vendors. "more with a force": messages with a force that are still sent
+after the fault, before only zero is sent; the fault latches. If a library or service hangs, it decides about the last force:
+Force Dimension's arm is set to end it after 20 ms.
 
 | fault | library or service | promise | result |
 |---|---|---|---|

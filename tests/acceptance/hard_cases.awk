@@ -1,5 +1,5 @@
-# Makes the table of the hard cases out of hard_cases.list and HARD_CASE lines (../support/hard_case.h).
-# Faults go to the file `faults`, one a line.
+# Writes the table of the hard cases from hard_cases.list and HARD_CASE lines (../support/hard_case.h).
+# Writes errors to the file `faults`, one per line.
 function fault(text) { print text > faults; ++bad }
 function short(x, digits,   text) {
   text = sprintf("%." digits "g", x + 0)
@@ -9,7 +9,7 @@ function short(x, digits,   text) {
   return text
 }
 function with_unit(x, unit) { return unit == "1" ? x : x " " unit }
-# How many times better than it has to be; where zero is on either side there is no such number.
+# Returns the factor by which a figure is better than required; undefined if figure or limit is zero.
 function margin(sign, measured, limit,   times) {
   if (sign == "=") return "equal"
   if (limit <= 0 || measured <= 0) return sign ~ /≤|</ && limit > 0 ? "all" : "–"
@@ -41,7 +41,7 @@ file == 1 {
   next
 }
 $1 == "HARD_CASE" {
-  if (NF != 9) { fault("a line that is not understood: " $0); next }
+  if (NF != 9) { fault("a malformed line: " $0); next }
   n = $2
   if (!(n in title)) { fault("case " n " is not in hard_cases.list (" $8 ")"); next }
   if (index($8, suite[n] ".") != 1) fault("case " n " has the suite " suite[n] ", not that of " $8)
@@ -62,9 +62,9 @@ $1 == "HARD_CASE" {
   label = $9
   sub(/.*\//, "", label)
   sub(/_test\.cpp$/, "", label)
-  # Near its limit a figure is told by more digits, so that it is seen on which side it is.
+  # Near its limit a figure has more digits, so that the side of the limit is visible.
   near = ($5 - $6) * ($5 - $6) < 1e-4 * $6 * $6
-  # What is nothing but rounding differs from machine to machine.
+  # A figure that is only rounding error differs between machines.
   nothing = $5 != 0 && $5 * $5 < 1e-18 * $6 * $6
   row = "| | " (is_guard ? "*must fail:* " : "") words (what == "" ? "" : ": " what) \
         " | " with_unit($5 == "inf" ? "∞" : nothing ? "≈ 0" : short($5, near ? 4 : 3), unit) " | " sign " " with_unit(short($6, 4), unit) \
@@ -83,23 +83,23 @@ END {
   }
   print "# The hard cases"
   print ""
-  print "Made by `tests/acceptance/hard_cases.sh` from a run of the tests; do not edit. All on the virtual clock, with fixed seeds,"
-  print "through the product's own code; but walls in one dimension (1, 2, 5 to 7, parts of 11 and 12) are a spring and damper on the"
-  print "simulated arm's exact map of one axis (tests/support/wall_rig.h), and the sums of 3, 4 and 37 are the test's own."
-  print "*Margin* is how many times better than needed the figure is (*all*: nothing of the limit is used). *Must fail* marks"
-  print "guards: what is known to go wrong does go wrong, so the test would see it. Figures are those of the short form that"
-  print "every run makes; where more is asked, the row says what `THIMBLE_LONG=1` does."
+  print "Written by `tests/acceptance/hard_cases.sh` from a run of the tests; do not edit. All cases run in virtual time with fixed seeds,"
+  print "through the product's own code. Exceptions: walls in one dimension (1, 2, 5 to 7, parts of 11 and 12) are a spring and damper on the"
+  print "simulated arm's exact map of one axis (tests/support/wall_rig.h), and the tests of 3, 4 and 37 use their own equations."
+  print "*Margin* is the factor by which the figure is better than required (*all*: it is 0 or less). *Must fail* marks"
+  print "guards: a known defect is measured, so the test would detect it. Figures are those of the short form that"
+  print "every run uses; rows whose criterion asks for more state what `THIMBLE_LONG=1` does."
   print ""
   print cases - missing " of " cases " cases, " figures " figures, of them " guard_count + 0 " guards."
   for (i = 1; i <= cases; ++i) {
     n = number[i]
     if (i in heading) {
       print "\n## " heading[i] "\n"
-      print "| # | Case, and what was measured | Measured | Must be | Margin | Test |"
+      print "| # | Case and measured quantity | Measured | Required | Margin | Test |"
       print "|---|---|---|---|---|---|"
     }
     print "| **" n "** | **" title[n] "** — " wanted[n] " | | | | |"
-    if (rows[n] == "") print "| | " (awaited[i] ? "not there yet" : "MISSING") " | | | | |"
+    if (rows[n] == "") print "| | " (awaited[i] ? "not measured yet" : "MISSING") " | | | | |"
     printf "%s%s", rows[n], guards[n]
   }
 }

@@ -4,7 +4,7 @@
 #   tests/acceptance/hard_cases.sh --check LINES  LINES: the folder of lines of a finished run; writes nothing.
 # Fails if a case has no figure, a figure misses its criterion, or (--check) the table in the
 # repository differs. Rows must be equal except for their figures, which may differ by 2 %, or
-# by a factor of 2 if both are 10 times better than needed, or by any factor if both are 1000
+# by a factor of 2 if both are 10 times better than required, or by any factor if both are 1000
 # times better, because another compiler or libm rounds differently. The long form
 # (THIMBLE_LONG) measures more, so its figures are not compared.
 set -euo pipefail
@@ -14,7 +14,7 @@ export LC_ALL=C
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# Writes the table of a folder of lines to a file; prints the faults and fails if there are any.
+# Writes the table of a folder of lines to a file; prints the errors and fails if there are any.
 make_table() {
   : >"$scratch/faults"
   [ ! -d "$1" ] || find "$1" -type f | sort | xargs -r cat >"$scratch/lines"
@@ -22,7 +22,7 @@ make_table() {
   awk -v faults="$scratch/faults" -f "$here/hard_cases.awk" "$here/hard_cases.list" \
     "$scratch/lines" >"$2"
   [ -s "$scratch/faults" ] || return 0
-  echo "The hard cases are not as they should be:" >&2
+  echo "Errors of the hard cases:" >&2
   sed 's/^/  /' "$scratch/faults" >&2
   return 1
 }
@@ -54,11 +54,11 @@ if [ "${1:-}" = --check ]; then
       least = times($5) < times(old[5]) ? times($5) : times(old[5])
       near = least >= 1000 || same(value($3), value(old[3]), least >= 10 ? 0.5 : 0.02)
       if (equal && near) next
-      print "  " name ":" FNR " says\n    " stored[FNR] "\n  and the tests\n    " $0
+      print "  " name ":" FNR " has\n    " stored[FNR] "\n  and the tests measure\n    " $0
       bad = 1
     }
     END { exit bad || FNR != stored_count }' "$table" "$scratch/now.md" >&2 || {
-    echo "The table differs from what the tests measure: run tests/acceptance/hard_cases.sh and look at it." >&2
+    echo "The table differs from the measurements. Run tests/acceptance/hard_cases.sh and review the changes." >&2
     exit 1
   }
   exit 0

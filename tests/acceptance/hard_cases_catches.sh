@@ -21,7 +21,7 @@ must_fail() {
     echo "hard_cases.sh --check did not notice $1" >&2
     exit 1
   fi
-  grep -q "$2" "$scratch/log" || { echo "Not told of $1:" >&2; cat "$scratch/log" >&2; exit 1; }
+  grep -q "$2" "$scratch/log" || { echo "Not reported: $1" >&2; cat "$scratch/log" >&2; exit 1; }
 }
 
 mkdir "$scratch/lines"
@@ -29,20 +29,20 @@ export THIMBLE_LONG=1  # lines that differ from the table
 lines && check || { cat "$scratch/log" >&2; exit 1; }
 lines '7|-' && must_fail "a case without figure" "case 7 has no figure"
 lines '7|2.1' && must_fail "a figure beyond its limit" "case 7, words: 2.1 is not ≤ 2"
-lines '7|nan' && must_fail "a figure that is no number" "case 7, words: nan is not"
+lines '7|nan' && must_fail "a figure that is not a number" "case 7, words: nan is not"
 lines '7|inf' && must_fail "an infinite figure" "case 7, words: inf is not"
 lines && echo "HARD_CASE|99|w|<= s|1|2|N|T.T|f" >>"$scratch/lines/all"
 must_fail "a case that is not in the list" "case 99 is not in"
 lines && echo "HARD_CASE|1|words|<= s|1|2|N|HardCaseJitter.Test|f" >>"$scratch/lines/all"
 must_fail "a test in the suite of another case" "case 1 has the suite HardCaseStiffestWall, not that of HardCaseJitter"
 lines && echo "HARD_CASE|1|torn" >>"$scratch/lines/all"
-must_fail "a torn line" "not understood"
+must_fail "a torn line" "a malformed line"
 # Rows like cases 4 and 38: above a limit, and equal to it.
 lines && echo "HARD_CASE|4|adversary|> gain|-0.49|0|1|HardCaseEncoderAdversary.Test|f" >>"$scratch/lines/all"
 must_fail "an adversary who gains nothing" "case 4, adversary: -0.49 is not > 0"
 lines && echo "HARD_CASE|38|glitches|== not dropped|1|0|1|HardCaseEncoderFault.Test|f" >>"$scratch/lines/all"
 must_fail "a glitch that was not dropped" "case 38, glitches: 1 is not = 0"
 unset THIMBLE_LONG
-lines && must_fail "an old table" "differs from what the tests measure"
-rm -r "$scratch/lines" && must_fail "a run that has left nothing" "case 1 has no figure"
-echo "hard_cases.sh --check catches what it must."
+lines && must_fail "an old table" "differs from the measurements"
+rm -r "$scratch/lines" && must_fail "a run without output" "case 1 has no figure"
+echo "hard_cases.sh --check reports all invented errors."

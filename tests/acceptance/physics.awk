@@ -1,5 +1,5 @@
-# Makes the page of physical values out of PHYSICS lines (../support/physics.h). Faults go to the file
-# `faults`, one a line.
+# Writes the page of physical values from PHYSICS lines (../support/physics.h). Writes errors to the file
+# `faults`, one per line.
 function fault(text) { print text > faults; ++bad }
 function number(x, text) {
   text = sprintf("%.5g", x + 0)
@@ -8,14 +8,14 @@ function number(x, text) {
 }
 BEGIN { FS = "|" }
 $1 == "PHYSICS" {
-  if (NF != 11) { fault("a line that is not understood: " $0); next }
+  if (NF != 11) { fault("a malformed line: " $0); next }
   if (!($8 + 0 <= $9 + 0) || $8 !~ /^[0-9.]+(e[-+]?[0-9]+)?$/)
     fault($2 ", " $3 ": error " $8 " is not within " $9 " (" $10 " in " $11 ")")
   if (!($2 in seen)) { seen[$2] = 1; order[++components] = $2 }
   label = $11
   sub(/.*\//, "", label)
   sub(/_test\.cpp$/, "", label)
-  # An error far below its bound is rounding, which differs from machine to machine.
+  # An error far below its bound is rounding, which differs between machines.
   error = $8 + 0 < 1e-3 * $9 ? "< " number($9 / 1000) : number($8)
   measured = $8 + 0 < 1e-3 * $9 ? number($6) : number($7)
   rows[$2] = rows[$2] "| " $3 " | `" $4 "` | " number($6) " | " measured " | " $5 " | " error " | " \
@@ -23,19 +23,19 @@ $1 == "PHYSICS" {
   ++values
 }
 END {
-  if (!values) fault("no test has noted a physical value")
+  if (!values) fault("no test has reported a physical value")
   print "# Physical values"
   print ""
-  print "Made by `tests/acceptance/physics.sh` from a run of the tests; do not edit. What the guide describes as physics, compared with"
-  print "closed forms: simulated time, the product's own code, SI units. *Error* is a share of the value by the closed form; where"
-  print "that is 0, of 1 in the unit given. *Bound* is the error at which the test fails. An error below a thousandth of its bound"
+  print "Written by `tests/acceptance/physics.sh` from a run of the tests; do not edit. The physical models of the guide, compared with"
+  print "closed forms: simulated time, the product's own code, SI units. *Error* is a fraction of the value of the closed form; if"
+  print "that is 0, the absolute error in the given unit. *Bound* is the error at which the test fails. An error below a thousandth of its bound"
   print "is printed as such."
   print ""
   print values + 0 " values of " components + 0 " components."
   for (i = 1; i <= components; ++i) {
     name = order[i]
     print "\n## " toupper(substr(name, 1, 1)) substr(name, 2) "\n"
-    print "| Quantity | Closed form | By the closed form | Measured | Unit | Error | Bound | Test |"
+    print "| Quantity | Closed form | Value of the closed form | Measured | Unit | Error | Bound | Test |"
     print "|---|---|---|---|---|---|---|---|"
     printf "%s", rows[name]
   }

@@ -12,14 +12,14 @@ export LC_ALL=C
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# Writes the page of a folder of lines to a file; prints the faults and fails if there are any.
+# Writes the page of a folder of lines to a file; prints the errors and fails if there are any.
 make_page() {
   : >"$scratch/faults"
   [ ! -d "$1" ] || find "$1" -type f | sort | xargs -r cat >"$scratch/lines"
   touch "$scratch/lines"
   awk -v faults="$scratch/faults" -f "$here/physics.awk" "$scratch/lines" >"$2"
   [ -s "$scratch/faults" ] || return 0
-  echo "Physical values are not as they should be:" >&2
+  echo "Errors of the physical values:" >&2
   sed 's/^/  /' "$scratch/faults" >&2
   return 1
 }
@@ -42,11 +42,11 @@ if [ "${1:-}" = --check ]; then
       n = split(stored[FNR], old, " [|] ")
       equal = n == 8 && NF == 8 && $1 == old[1] && $2 == old[2] && $3 == old[3] && $5 == old[5] && $7 == old[7] && $8 == old[8]
       if (equal && near(value($6), value(old[6]), value($7))) next
-      print "  " name ":" FNR " says\n    " stored[FNR] "\n  and the tests\n    " $0
+      print "  " name ":" FNR " has\n    " stored[FNR] "\n  and the tests measure\n    " $0
       bad = 1
     }
     END { exit bad || FNR != stored_count }' "$page" "$scratch/now.md" >&2 || {
-    echo "The page differs from what the tests measure: run tests/acceptance/physics.sh and look at the changes." >&2
+    echo "The page differs from the measurements. Run tests/acceptance/physics.sh and review the changes." >&2
     exit 1
   }
   exit 0

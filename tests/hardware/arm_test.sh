@@ -6,7 +6,7 @@
 # far above both (CMakeLists.txt).
 set -euo pipefail
 if [ -z "${THIMBLE_ARM:-}" ]; then
-  echo "HARDWARE TEST SKIPPED: plug an arm in and name its file, e.g. THIMBLE_ARM=app/arms/woodenhaptics.yaml"
+  echo "HARDWARE TEST SKIPPED: plug in an arm and set its file, for example THIMBLE_ARM=app/arms/woodenhaptics.yaml"
   exit 77
 fi
 thimble=$1

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tests arm_test.sh with a program instead of thimble that notes its arguments and how it ends.
+# Tests arm_test.sh with a program instead of thimble that records its arguments and how it ends.
 #   limits_test.sh ARM_TEST WORK_DIR CTEST_TIMEOUT
 set -u
 arm_test=$1 work=$2 ctest_timeout=$3
@@ -30,7 +30,7 @@ for code in 0 3 4 5; do
   run
   check "exit code of the suite" $code $?
 done
-# Both suites end by themselves, later than they need (150 s, 70 minutes) and long before CTest kills.
+# Both suites end by themselves, after more than their usual time (150 s, 70 minutes) and long before CTest kills them.
 for suite in "quick 150" "full 4200"; do
   set -- $suite
   rm -f calls
@@ -40,12 +40,12 @@ for suite in "quick 150" "full 4200"; do
   check "the limit of $1 is above $2 s" yes "$([ "${limit:-0}" -gt "$2" ] && echo yes)"
   check "the limit of $1 is 10 minutes below CTest's" yes "$([ $((limit + 600)) -lt "$ctest_timeout" ] && echo yes)"
 done
-check "only a real arm counts" 1 "$(grep -c -- '--require-device' calls)"
+check "a real arm is required" 1 "$(grep -c -- '--require-device' calls)"
 # A suite that does not end gets SIGTERM, and can answer with zero force.
 touch hangs
 THIMBLE_LIMIT=1 THIMBLE_GRACE=1 run
-check "a suite that hangs is no success" yes "$([ $? -ne 0 ] && echo yes)"
-check "how a suite that hangs was ended" SIGTERM "$(cat ended 2>/dev/null)"
+check "a suite that hangs fails" yes "$([ $? -ne 0 ] && echo yes)"
+check "signal to a suite that hangs" SIGTERM "$(cat ended 2>/dev/null)"
 rm -f hangs ended
 # Without an arm file nothing is tested.
 (unset THIMBLE_ARM; run)

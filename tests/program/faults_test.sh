@@ -116,10 +116,10 @@ if [ -d /dev/shm ]; then
   kill $viewer 2>/dev/null
   wait $viewer
   expect 1 '' test $? -ge 132  # 130, by the signal; more is a crash
-  cell "SIGSTOP, SIGCONT of the viewer" "sliding, recording" "the run goes on to its end"
+  cell "SIGSTOP, SIGCONT of the viewer" "sliding, recording" "the run continues to its end"
   expect 1 '' bash -c '"$0" view --list | grep "^$1:"' "$thimble" "$me"
   expect_run 0 .end.reason == done "$thimble" run "$scenes/honey.yaml" --duration 0.1 --name "$me"
-  cell "shared memory removed" "sliding, recording" "the run goes on; the name is free again"
+  cell "shared memory removed" "sliding, recording" "the run continues; the name is free again"
 else
   not_tested "shared memory removed" sliding "no POSIX shared memory"
 fi
@@ -150,7 +150,7 @@ if unshare -rm true 2>/dev/null; then
     expect_words 0 'recording # space' cat full
     expect_json full_report/report.json .end.zero_assured == true
     expect 0 'full.csv: [1-9][0-9]+ .*rubber.* cut' cat full_disk
-    cell "disk full" "recording" "the touch goes on; what was written can be read; told, exit code 1"
+    cell "disk full" "recording" "the run continues; the written part is readable; error message, exit code 1"
     expect 0 '^thimble: .*second\.h5' cat full_disk
     expect_own 0 '^code 2$' tail -1 full_disk
     cell "disk full" "opening" "refused with a sentence, no crash"
@@ -160,7 +160,7 @@ else
 fi
 expect 0 '^0$' bash -c '"$0" run "$1" --duration 0.5 --no-view | true; echo ${PIPESTATUS[0]}' \
   "$thimble" "$scenes/rubber.yaml"
-cell "reader of the output gone" "sliding" "the run goes on to its end"
+cell "reader of the output gone" "sliding" "the run continues to its end"
 
 # The servo does not use the date.
 jump=$(dirname "$work")/libclock_jump.so
@@ -187,7 +187,7 @@ if "${rt[@]}" true 2>/dev/null; then
   ends_well "${rt[@]}" "$thimble"
   expect_words 0 'Real-time group' cat out
   expect_json report/report.json .real_time.fifo == false
-  cell "real-time priority refused" "sliding" "told with what to do; the run goes on"
+  cell "real-time priority refused" "sliding" "message with a remedy; the run continues"
 else
   not_tested "real-time priority refused" sliding "setpriv or prlimit cannot take it away"
 fi

@@ -156,9 +156,9 @@ run 0 tests/run.sh --without guide release
 says '^ +missing +guide '
 run 0 env THIMBLE_WITHOUT=guide tests/run.sh release
 run 2 tests/run.sh --without nonsense release
-says "No optional part has the key 'nonsense'"
+says "Unknown optional part 'nonsense'"
 run 2 env THIMBLE_WITHOUT=program app/setup.sh release thimble
-says "No optional part has the key 'program'"
+says "Unknown optional part 'program'"
 : >"$FAKE/unavailable"
 
 echo "Tests that depend on the wall clock ..."

@@ -9,13 +9,13 @@
 #include "thimble/driver/real_time.h"
 #include "thimble/scene/arm_simulation.h"
 
-// The loop in wall-clock time, beside readers: what the thread sanitizer looks at. Times are not
-// judged: this machine may be busy.
+// The loop in real time with concurrent readers, for the thread sanitizer. Times are not checked,
+// because the machine may be busy.
 
 namespace thimble {
 namespace {
 
-TEST(WallClockRun, ShowsItsTicksToReadersThatNeverStopIt) {
+TEST(WallClockRun, ReadersDoNotStallTheRun) {
   THIMBLE_NEEDS_MESHES();
   session::SessionOptions options;
   options.clock = session::ClockKind::kWall;
@@ -55,7 +55,7 @@ TEST(WallClockRun, ShowsItsTicksToReadersThatNeverStopIt) {
   EXPECT_GT(seen.load(), 0u);
   EXPECT_EQ(backwards.load(), 0u);
   EXPECT_EQ(session.statistics().ticks(), session.newest().count());
-  // A machine that pauses for 100 ms makes the arm's watchdog fire, which the loop must name.
+  // If the machine pauses for 100 ms, the arm's watchdog fires and the loop must report that fault.
   if (end != driver::ServoEnd::kDone) {
     EXPECT_EQ(session.device().fault(), driver::Fault::kLoopStalled);
   }

@@ -52,7 +52,7 @@ int check_kernel(const VirtualArm& arm) {
   same("product", d.product);
   same("serial", d.serial);
   std::string interfaces = std::to_string(d.interfaces.size());
-  interfaces.insert(0, 2 - interfaces.size(), ' ');  // the kernel prints two places
+  interfaces.insert(0, 2 - interfaces.size(), ' ');  // the kernel prints two digits
   same("bNumInterfaces", interfaces);
   std::string nodes;
   for (std::size_t i = 0; i < d.interfaces.size(); ++i) {
@@ -78,7 +78,7 @@ int check_kernel(const VirtualArm& arm) {
   return verdict(wrong.empty(), arm.name + " in the kernel",
                  wrong.empty() ? "bcdDevice " + std::string(release) + "," + nodes +
                                      " descriptors byte for byte"
-                               : "other than the board said:" + wrong);
+                               : "not as sent by the board:" + wrong);
 }
 
 int check_vectors(const VirtualArm& arm) {

@@ -6,24 +6,24 @@
 
 namespace thimble::usb_test {
 
-// What is true of a board before anybody touches it. Each says PASS or FAIL and returns how many
-// checks failed.
+// Checks of a board before any contact. Each prints PASS or FAIL and returns the number of failed
+// checks.
 
-/// Prints how a check went; returns 0 if it passed, else 1.
+/// Prints the result of a check; returns 0 if it passed, else 1.
 int verdict(bool pass, const std::string& what, const std::string& detail);
 
-/// Compares ids, strings, interfaces and report descriptors, as the kernel shows them, with those
-/// that the board sent, and says which node it got.
+/// Compares ids, strings, interfaces and report descriptors in the kernel with those that the board
+/// sent, and prints the node of the board.
 int check_kernel(const VirtualArm& arm);
 
-/// Compares where fixed reports put the tip with what the published programs make of them.
+/// Compares the tip positions for fixed reports with those of the published programs.
 int check_vectors(const VirtualArm& arm);
 
-/// Opens the wire, says nothing and counts what comes.
+/// Opens the wire, sends nothing and counts the reports.
 int check_unasked(const VirtualArm& arm);
 
-/// Sends messages of another board's length. Either nobody opens the arm that way, or the run ends
-/// with a named fault.
+/// Sends messages with the length of another board. Either the arm is not opened, or the run ends
+/// with a fault.
 int check_wrong_length(const VirtualArm& arm);
 
 }  // namespace thimble::usb_test

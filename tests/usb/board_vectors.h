@@ -8,13 +8,13 @@
 
 namespace thimble::usb_test {
 
-/// What a board sends at one pose, and where its published host program then sees the tip. Frame B
-/// as there: x to the user, y to the user's right, z up.
+/// A report of a board at one pose, and the tip position that its published host program computes.
+/// Frame B as in that program: x to the user, y to the user's right, z up.
 struct BoardVector {
-  std::string_view board;              ///< As `thimble plug` calls it.
-  std::size_t size;                    ///< Of a report, bytes.
+  std::string_view board;              ///< Name in `thimble plug`.
+  std::size_t size;                    ///< Size of a report, bytes.
   std::array<std::int16_t, 3> counts;  ///< Encoders a to c, the first words of the report.
-  std::array<double, 3> tip;           ///< p_BT, m.
+  std::array<double, 3> tip;           ///< Position of the tip, p_BT, m.
 
   /// Returns the report: words, the low byte first, and zeros up to its size.
   std::vector<std::byte> report() const {
@@ -28,17 +28,17 @@ struct BoardVector {
   }
 };
 
-// Worked out by hand from the sources, not by this project's code.
+// Computed by hand from the sources, not by this project's code.
 //
-// WoodenHaptics, 8 bytes [S CHAI3D's CWoodenDevice.cpp]: A = -2 pi a / 2000 / 16,
-// B = -2 pi b / 2000 / 12, C = 90 degrees - 2 pi c / 2000 / 12, r = 0.205 sin B + 0.245 sin C,
-// tip = (r cos A, r sin A, 0.080 + 0.205 cos B - 0.245 cos C). So more counts of a move the tip
-// towards -y, which text-line boards do the other way round.
+// WoodenHaptics, 8 bytes [S CHAI3D's CWoodenDevice.cpp]: A = -2 pi a / 2000 / 16, B = -2 pi b /
+// 2000 / 12, C = 90 degrees - 2 pi c / 2000 / 12, r = 0.205 sin B + 0.245 sin C, tip = (r cos A, r
+// sin A, 0.080 + 0.205 cos B - 0.245 cos C). So increasing counts of a move the tip towards -y; on
+// text-line boards towards +y.
 //
 // Polhem [S forsslund/hfabapi hfab_api.cpp, hfab_polhem.h; fsusbhapticdevicethread.cpp takes the
-// counts of this board as they are]: A = 2 pi (a + 8312) / 4096 / (175 / 28.8534),
-// B = -2 pi (b - 10366) / 4096 / (100 / 13.6981), C = 2 pi (c + 19764) / 4096 / (100 / 13.7281);
-// then the two circles of its bars are cut in the plane that A turns.
+// counts of this board as they are]: A = 2 pi (a + 8312) / 4096 / (175 / 28.8534), B = -2 pi (b -
+// 10366) / 4096 / (100 / 13.6981), C = 2 pi (c + 19764) / 4096 / (100 / 13.7281); then the two
+// circles of its bars are intersected in the plane that A turns.
 inline constexpr std::array<BoardVector, 5> kBoardVectors{{
     {"woodenhaptics", 8, {0, 0, 0}, {0.245, 0, 0.285}},
     {"woodenhaptics", 8, {1000, -1500, 700}, {0.3132113822, -0.0623016175, 0.2247476004}},

@@ -32,13 +32,13 @@ int be_gadget(const std::string& arm, const std::string& node) {
     return 1;
   }
   device_sim::usb::UsbArm& device = **made;
-  // The kernel's gadget has endpoints of its own; the board has those of its first interface.
+  // The kernel's gadget has its own endpoints; the board uses those of its first interface.
   const auto& endpoints = device.description().interfaces[0].endpoints;
   const std::uint8_t in = endpoints[0].address, out = endpoints[1].address;
   driver::WallClock clock(0);
   const std::int64_t begin_ns = clock.now_ns();
   std::array<std::byte, device_sim::usb::UsbDevice::kPacketMax> report{}, message{};
-  std::size_t size = 0;  // of a report that the host has not taken yet
+  std::size_t size = 0;  // of a report that the host has not read yet
   for (std::int64_t frame = 1;; ++frame) {
     clock.sleep_until_ns(begin_ns + frame * kFrame_ns);
     device.advance_to(clock.now_ns() - begin_ns);

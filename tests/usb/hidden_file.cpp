@@ -21,8 +21,8 @@
 namespace thimble::usb_test {
 namespace {
 
-// Cables of a large arm: what 25 to 250 N m/rad and motors of 1e-4 to 9e-4 kg m^2 are to the
-// vintage PHANTOM, whose links are half as long.
+// Cables of a large arm. They correspond to 25 to 250 N m/rad and motors of 1e-4 to 9e-4 kg m^2 on
+// the vintage PHANTOM, whose links are half as long.
 constexpr double kSoftest = 100;    // N m/rad
 constexpr double kLightest = 4e-4;  // kg m^2
 
@@ -42,7 +42,7 @@ std::string exact(const Eigen::Vector3d& values) {
   return "[" + exact(values[0]) + ", " + exact(values[1]) + ", " + exact(values[2]) + "]";
 }
 
-/// Puts another value behind the first key of that name after `from`; false if there is none.
+/// Replaces the value of the first key of that name after `from`; returns false if there is none.
 bool exchange(std::string& text, const std::string& key, const std::string& value,
               std::size_t from = 0) {
   const std::size_t at = text.find(key + ": ", from);
@@ -52,12 +52,12 @@ bool exchange(std::string& text, const std::string& key, const std::string& valu
   return true;
 }
 
-/// Puts lines behind the line that begins with `key`, which is there.
+/// Inserts lines after the line that begins with `key`. Precondition: it exists.
 void put_behind(std::string& text, const std::string& key, const std::string& lines) {
   text.insert(text.find('\n', text.find(key) + 1) + 1, lines);
 }
 
-/// Puts the torque constants into a file, which may leave them, or all joints, to the program.
+/// Writes the torque constants into a file, which may lack them or all joints.
 void put_torques(std::string& text, const std::string& values) {
   if (exchange(text, "  torque_constant", values)) return;
   const std::string line = "  torque_constant: " + values + "\n";
@@ -68,8 +68,8 @@ void put_torques(std::string& text, const std::string& values) {
   }
 }
 
-/// Returns the half-width of the interval that a written file states behind a key: the first after
-/// `from` whose line has one.
+/// Returns the half-width of the interval in the comment of a key: the first after `from` whose
+/// line has one.
 std::optional<double> stated(const std::string& text, const std::string& from,
                              const std::string& key) {
   const std::size_t section = text.find(from);
@@ -81,12 +81,12 @@ std::optional<double> stated(const std::string& text, const std::string& from,
   return std::strtod(line.c_str() + mark + 3, nullptr);
 }
 
-/// One constant of a written file beside what is true.
+/// A constant of a written file and its true value.
 struct Compared {
   std::string name, unit;
-  double found, truth, allowed;    // in the unit; `allowed`: how far off it may be
-  std::optional<double> interval;  // half-width that the file states
-  bool interval_will_do = false;   // inside it is as good
+  double found, truth, allowed;    // in the unit; `allowed`: largest allowed error
+  std::optional<double> interval;  // half-width in the file
+  bool interval_will_do = false;   // a true value inside it is also accepted
 
   int say(const std::string& arm) const {
     const double off = std::abs(found - truth);
@@ -102,12 +102,12 @@ struct Compared {
                 in_ms ? off : 100 * off / std::abs(truth), in_ms ? "ms" : "%");
     return verdict(good, arm + " identified: " + name,
                    text + std::string(!interval ? ""
-                                      : held    ? "; its interval holds it"
+                                      : held    ? "; inside its interval"
                                                 : "; outside its interval"));
   }
 };
 
-/// Returns at which frequencies (Hz) the motors of a simulated arm oscillate against its links,
+/// Returns the frequencies (Hz) at which the motors of a simulated arm oscillate against its links,
 /// each with the other joints held and the tip at the world's origin.
 Eigen::Vector3d resonances(const scene::ArmFile& file) {
   const Eigen::Vector3d p_BT = file.R_WB.transpose() * -file.p_WB;
@@ -174,7 +174,7 @@ int check_identified(const std::string& arm, const std::string& believed, const 
                    found->model.drives[i].torque_constant / named, gain, 0.02 * gain,
                    torque ? std::optional(*torque / named) : std::nullopt});
   }
-  // The bus of a Falcon is code, and its delay a remark.
+  // The bus of a Falcon is defined in code, and its delay is a comment in the file.
   const bool remark = found->is<driver::DeltaArm>();
   const std::string key = remark ? "# delay from force to motion" : "delay_out";
   const std::size_t at = text.find("# delay from force to motion: ");

@@ -4,18 +4,17 @@
 
 namespace thimble::usb_test {
 
-/// Prints an arm file like that of `file` whose simulated arm has other constants of mass,
-/// friction and gains (support::hidden_arm_of), drawn by `seed`, and with `cables` also cables that
-/// stretch (support::put_cables). Returns 1, with a sentence, if the file cannot be read or
-/// changed.
+/// Prints a copy of the arm file `file` whose simulated arm has other masses, friction and gains
+/// (support::hidden_arm_of), drawn by `seed`. With `cables` it also has elastic cables
+/// (support::put_cables). Returns 1 and prints an error if the file cannot be read or changed.
 int print_hidden_file(const std::string& file, const std::string& seed, bool cables);
 
-/// Compares an arm file that `thimble identify` wrote out of the one that it believed with the one
-/// whose simulated arm it identified: mass to 3 %, Coulomb friction to 5 %, gains to 2 %, viscous
-/// friction to 10 % or inside the interval that the file states, the delay to 0.1 ms of `delay_ms`,
-/// which the arm's own trace tells, and behind cables that stretch the resonance of each motor
-/// against its link, with the tip at the world's origin, to 5 %. Says PASS or FAIL, and a FIGURE
-/// for each; returns how many failed.
+/// Compares an arm file written by `thimble identify` with the file of the simulated arm that it
+/// identified. `believed` is the file that it started from. Tolerances: mass 3 %, Coulomb friction
+/// 5 %, gains 2 %; viscous friction 10 %, or the interval in the file; delay 0.1 ms from
+/// `delay_ms`, the delay in the arm's own trace. With elastic cables also the resonance of each
+/// motor against its link, with the tip at the world's origin: 5 %. Prints PASS or FAIL and a
+/// FIGURE for each; returns the number of failures.
 int check_identified(const std::string& arm, const std::string& believed, const std::string& hidden,
                      const std::string& written, const std::string& delay_ms);
 

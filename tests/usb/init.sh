@@ -41,7 +41,7 @@ unplug() {
   kill -INT $plugged
   wait $plugged
   status=$?
-  [ $status = 0 ] || echo "FAIL plug: left with $status: $(cat /tmp/plug.log)"
+  [ $status = 0 ] || echo "FAIL plug: exited with $status: $(cat /tmp/plug.log)"
   for i in $(seq 200); do
     grep -q "^hs  0000 004" /sys/devices/platform/vhci_hcd.0/status && break
     usleep 10000
@@ -91,7 +91,7 @@ for arm in $arms; do
   # its owner access.
   if [ $arm = polhem-64 ]; then
     plug $arm /tmp/device.trace
-    as tester "usb_check denied $arm" | sed "s/closed to strangers/closed until its owner says so/"
+    as tester "usb_check denied $arm" | sed "s/closed to strangers/closed until its owner adds a rule/"
     as tester "HOME=/tmp thimble doctor" >/tmp/doctor.log 2>&1
     mkdir -p /etc/udev/rules.d
     sed -n "s/.*echo '\(SUBSYSTEM[^']*\)'.*/\1/p" /tmp/doctor.log >/etc/udev/rules.d/71-my-arm.rules

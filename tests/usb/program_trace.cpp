@@ -18,8 +18,8 @@ namespace {
 
 using Numbers = std::array<double, 3>;
 
-constexpr double kSame = 1e-9;     // N: digits of the texts
-constexpr std::size_t kFew = 100;  // ticks with force, below which nothing was compared
+constexpr double kSame = 1e-9;     // N: precision of the text files
+constexpr std::size_t kFew = 100;  // ticks with force; with fewer the comparison proves nothing
 
 struct RecordedTick {
   int fresh = 0;
@@ -92,7 +92,7 @@ int trace_of_program(const VirtualArm& arm, const std::string& log, const std::s
   std::fprintf(out, "0\n");
   std::size_t at = 0, felt = 0, unknown = 0, held_back = 0, opening = 0;
   double most = 0;
-  bool open = false;  // the gate, and the force that a program has switched on
+  bool open = false;  // the gate is open, and a program has switched on the force
   for (const RecordedTick& tick : ticks) {
     std::size_t k = at;
     while (k < asked.size() && !same(asked[k], tick.f_wanted)) ++k;
@@ -115,10 +115,10 @@ int trace_of_program(const VirtualArm& arm, const std::string& log, const std::s
   std::fclose(out);
   return verdict(felt >= kFew && unknown == 0 && held_back <= felt / 4 && most > 0.3,
                  arm.name + " program",
-                 std::to_string(asked.size()) + " forces asked for, " + std::to_string(felt) +
+                 std::to_string(asked.size()) + " forces requested, " + std::to_string(felt) +
                      " ticks with one of them, " + std::to_string(most) + " N at most; " +
                      std::to_string(unknown) + " with another, " + std::to_string(held_back) +
-                     " held back by the gate, " + std::to_string(opening) + " before it was open");
+                     " limited by the gate, " + std::to_string(opening) + " before it opened");
 }
 
 }  // namespace thimble::usb_test

@@ -6,11 +6,11 @@
 
 namespace thimble::usb_test {
 
-/// Compares what a program of `thimble exec` asked for with what the servo was given: each force of
-/// the recording (`thimble export --csv`) is one that the program logged, in order. `axes` says
-/// which of the program's numbers are x, y and z of the world, such as "zxy". Writes a trace
-/// for `compare_traces` in which each tick's force is the program's own wherever the gate was
-/// to let all of it through. Returns how much was wrong.
+/// Compares the requested forces of a program under `thimble exec` with those that the servo got:
+/// each force of the recording (`thimble export --csv`) is one that the program logged, in order.
+/// `axes` selects the program's numbers for x, y and z of the world, for example "zxy". Writes a
+/// trace for `compare_traces`, in which the force of a tick is that of the program if the gate had
+/// to pass it unchanged. Returns the number of errors.
 int trace_of_program(const VirtualArm& arm, const std::string& log, const std::string& axes,
                      const std::string& recording, const std::string& trace);
 

@@ -22,20 +22,20 @@ struct Tick {
   Numbers f_sent{};
 };
 
-/// One packet as the arm saw it.
+/// A packet as received by the arm.
 struct Report {
-  std::uint64_t number = 0;  // counted by the arm; two in one frame leave a gap
+  std::uint64_t number = 0;  // counted by the arm; two in one frame cause a missing number
   std::int64_t sampled_frame = 0, sampled_ns = 0;
   Counts counts{};
   Numbers exact{};
 };
 struct Message {
-  std::int64_t frame = 0, time_ns = 0;  // frame: in which the trace notes it
+  std::int64_t frame = 0, time_ns = 0;  // frame: the frame of its line in the trace
   Counts values{};
 };
 
 struct DriverTrace {
-  std::size_t refused = 0;  // messages that the wire did not take
+  std::size_t refused = 0;  // messages that the wire refused
   std::vector<Tick> ticks;
 };
 
@@ -54,7 +54,7 @@ DriverTrace read_driver(const std::string& file) {
 
 struct DeviceTrace {
   std::vector<Report> reports;
-  std::map<std::uint64_t, Message> messages;  // by number; two in one frame leave a gap
+  std::map<std::uint64_t, Message> messages;  // by number; two in one frame cause a missing number
 };
 
 DeviceTrace read_device(const std::string& file) {
@@ -73,7 +73,7 @@ DeviceTrace read_device(const std::string& file) {
         r.exact[0] >> r.exact[1] >> r.exact[2] >> messages >> m.values[0] >> m.values[1] >>
         m.values[2] >> currents[0] >> currents[1] >> currents[2] >> p_BT[0] >> p_BT[1] >> p_BT[2] >>
         motors_on >> r.sampled_ns >> m.time_ns;
-    if (!words) break;  // the last line may be cut
+    if (!words) break;  // the last line may be incomplete
     if (r.number != reports_before) trace.reports.push_back(r);
     if (messages != messages_before) trace.messages[messages] = m;
     reports_before = r.number;
@@ -82,8 +82,8 @@ DeviceTrace read_device(const std::string& file) {
   return trace;
 }
 
-/// Finds the motor values that a force at these counts asks for, by tau = J^T f, in the wire's unit
-/// (mA, or motor values of the Falcon, 1000 to the ampere too).
+/// Returns the motor values for a force at these counts, by tau = J^T f, in the wire's unit (mA, or
+/// motor values of the Falcon, also 1000 per ampere).
 Numbers values_for(const driver::Arm& arm, const Tick& tick) {
   driver::ArmReading reading;
   reading.counts = tick.counts;
@@ -102,7 +102,7 @@ Numbers values_for(const driver::Arm& arm, const Tick& tick) {
 struct Match {
   std::size_t wrong = 0, compared = 0, left_out = 0;
   double worst = 0;
-  std::vector<std::uint64_t> message_of;  // number of each tick's message, 0 if it was left out
+  std::vector<std::uint64_t> message_of;  // number of each tick's message, 0 if it is missing
 };
 
 double difference(const Message& message, const Numbers& wanted) {
@@ -111,13 +111,14 @@ double difference(const Message& message, const Numbers& wanted) {
   return off;
 }
 
-/// Compares the messages from `first` on with the ticks in order. As many ticks may lack a message
-/// as the wire refused: where a message is that of the next tick, this tick's was one of them.
+/// Compares the messages from `first` on with the ticks in order. The number of ticks without a
+/// message may equal the number of refused messages: if a message is that of the next tick, the
+/// message of this tick was refused.
 Match match_messages(const std::vector<Numbers>& wanted, const DeviceTrace& trace,
                      std::uint64_t first, std::size_t refused) {
-  // Rounding moves by half a quantum; the trace's own digits by a hundredth.
+  // Rounding adds half a quantum, the precision of the trace a hundredth.
   constexpr double kOff = 0.51;
-  constexpr std::size_t kWrongMax = 50;  // this is not where the ticks begin
+  constexpr std::size_t kWrongMax = 50;  // the ticks do not begin here
   Match match;
   match.message_of.assign(wanted.size(), 0);
   for (std::size_t i = 0; i < wanted.size() && match.wrong < kWrongMax; ++i) {
@@ -171,11 +172,11 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
     return say(false, arm.name + " traces", "too short to compare");
   }
 
-  // Positions: each that the driver saw is one of the reports that the arm sent, in their order.
-  // The trace has a line per frame, so of two reports in one frame it lacks one. Such a report must
-  // not be taken for a later one with the same counts: the arm moves to and fro, and all ticks
-  // after it would then be compared with reports of the future.
-  // Reports that are searched beyond one for each tick since the last match [chosen].
+  // Positions: each position of the driver is one of the reports that the arm sent, in order. The
+  // trace has one line per frame, so it lacks one of two reports in a frame. Such a report must not
+  // be matched with a later one with the same counts: the arm moves to and fro, and all later ticks
+  // would then be compared with future reports. Number of reports to search in addition to one for
+  // each tick since the last match [chosen].
   constexpr std::size_t kAhead = 8;
   std::size_t at = 0, last_tick = 0, unknown = 0, lacking = 0;
   std::vector<std::size_t> seen(ticks.size(), SIZE_MAX);
@@ -216,7 +217,8 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
                     " reports that share a frame, " + std::to_string(worst_count) +
                     " counts off at most");
 
-  // Forces: the ticks' messages are a run of the arm's; the driver sent a few before the first.
+  // Forces: the messages of the ticks are consecutive messages of the arm; the driver sent a few
+  // before the first.
   std::vector<Numbers> wanted;
   wanted.reserve(ticks.size());
   for (const Tick& tick : ticks) wanted.push_back(values_for(*protocol, tick));
@@ -235,14 +237,14 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
              std::to_string(best.compared) + " messages compared, " + std::to_string(best.wrong) +
                  " wrong, " + std::to_string(best.worst) + " quanta off at most; " +
                  std::to_string(best.left_out) + " of " + std::to_string(driven.refused) +
-                 " refused ones left out");
+                 " refused ones omitted");
 
-  // Delay: only of reports whose counts no other report near them had, so that the tick surely
-  // answers this one. One in a hundred may still be taken for a later one, which it seems to answer
-  // too early.
-  constexpr std::size_t kNear = 25;  // reports either way [chosen]
+  // Delay: only for reports whose counts differ from those of all nearby reports, so that the tick
+  // certainly responds to this report. One in a hundred may still be matched with a later report,
+  // whose response then seems too early.
+  constexpr std::size_t kNear = 25;  // reports before and after [chosen]
   std::vector<double> delays;        // ms
-  std::size_t early = 0;             // answered within the frame of their report
+  std::size_t early = 0;             // responses within the frame of their report
   for (std::size_t i = 0; i < ticks.size(); ++i) {
     const std::size_t k = seen[i];
     if (k == SIZE_MAX || k < kNear || k + kNear >= trace.reports.size()) continue;
@@ -256,7 +258,7 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
     const auto message = trace.messages.find(best.message_of[i]);
     if (!sure || message == trace.messages.end()) continue;
     if (message->second.frame <= report.sampled_frame) {
-      // Of the same counts, and before the message: that is the report which it answers.
+      // The report with the same counts before the message is the one to which it responds.
       bool answers_another = false;
       for (std::size_t j = k; j-- > 0 && !answers_another;) {
         answers_another = trace.reports[j].counts == report.counts &&

@@ -1,22 +1,22 @@
-// Drives a plugged arm through the kernel and says PASS or FAIL. Runs inside the virtual machine:
-//   usb_check find ARM
-//   usb_check name ARM                            what `thimble run --device` calls it
-//   usb_check kernel ARM                          what the kernel made of its descriptors
-//   usb_check vector ARM                          fixed reports, and where the tip then is
-//   usb_check listen ARM                          what it sends unasked
-//   usb_check wrong ARM                           messages of another length
-//   usb_check fresh ARM [FIRMWARE]                is its first position of now?
-//   usb_check denied ARM
-//   usb_check touch ARM TICKS TRACE [FIRMWARE]
-//   usb_check hang ARM [FIRMWARE]                 touches, says so, until it is killed
-//   usb_check replug ARM PIPE [FIRMWARE]
-//   usb_check fault ARM PIPE "FAULT" [FIRMWARE]
-//   usb_check compare ARM TRACE DEVICE_TRACE
-//   usb_check program ARM LOG AXES CSV TRACE      what a program under `thimble exec` asked for, as
-//   a trace usb_check descriptor ARM                      the HID report descriptor, as bytes
-//   usb_check gadget ARM NODE                     is the arm behind a HID gadget
-//   usb_check hide FILE SEED [cables]             an arm file of other constants
-//   usb_check identified ARM FILE HIDDEN WRITTEN DELAY    what was identified beside what is true
+// Drives a plugged arm through the kernel and prints PASS or FAIL. Runs inside the virtual machine:
+//   usb_check find ARM                            waits until the arm is listed
+//   usb_check name ARM                            prints its name for `thimble run --device`
+//   usb_check kernel ARM                          checks its descriptors in the kernel
+//   usb_check vector ARM                          checks the tip positions of fixed reports
+//   usb_check listen ARM                          counts the reports that it sends unasked
+//   usb_check wrong ARM                           sends messages of another length
+//   usb_check fresh ARM [FIRMWARE]                checks that its first position is current
+//   usb_check denied ARM                          checks that this user cannot open it
+//   usb_check touch ARM TICKS TRACE [FIRMWARE]    runs ticks in contact and writes their trace
+//   usb_check hang ARM [FIRMWARE]                 stays in contact until it is killed
+//   usb_check replug ARM PIPE [FIRMWARE]          disconnects the arm in contact
+//   usb_check fault ARM PIPE "FAULT" [FIRMWARE]   causes a fault in contact
+//   usb_check compare ARM TRACE DEVICE_TRACE      compares the traces of driver and arm
+//   usb_check program ARM LOG AXES CSV TRACE      writes the trace of a program of `thimble exec`
+//   usb_check descriptor ARM                      prints the HID report descriptor, as bytes
+//   usb_check gadget ARM NODE                     runs the arm behind a HID gadget
+//   usb_check hide FILE SEED [cables]             prints an arm file with hidden constants
+//   usb_check identified ARM FILE HIDDEN WRITTEN DELAY    compares identified and true constants
 #include <dirent.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ int open_descriptors() {
   return count;
 }
 
-/// Keeps what each tick did, in room made beforehand.
+/// Stores the result of each tick in memory that was allocated before.
 struct Recorder {
   std::vector<driver::TickRecord> records;
 
@@ -63,9 +63,9 @@ struct Recorder {
   }
 };
 
-/// One arm opened and ready to be touched.
+/// An open arm, ready for contact.
 struct Bench {
-  driver::WallClock clock{0};  // one processor: a loop that spins keeps the kernel from working
+  driver::WallClock clock{0};  // one processor: a spinning loop would block the kernel
   driver::FoundArm found;
   std::unique_ptr<driver::Device> device;
 };
@@ -106,10 +106,10 @@ int denied(const VirtualArm& arm) {
                  wire ? "it was opened" : wire.error().message);
 }
 
-/// Opens an arm whose hand moved on since the last program left. A report that waited in the board
-/// since then would show the tip where it was.
+/// Opens an arm whose hand has moved since the last program ended. A report that had waited in the
+/// board since then would have an old position.
 int fresh(const VirtualArm& arm) {
-  constexpr double kMost = 0.002;  // m; the hand goes 0.13 mm in a tick
+  constexpr double kMost = 0.002;  // m; the hand moves 0.13 mm per tick
   auto opened = open_bench(arm);
   if (!opened) return verdict(false, arm.name + " opened", opened.error().message);
   Bench& bench = **opened;
@@ -162,7 +162,7 @@ int touch(const VirtualArm& arm, std::uint64_t ticks, const std::string& trace) 
                         " skipped, " + std::to_string(wire.missing) + " ticks without, " +
                         std::to_string(wire.rejected) + " rejected, " +
                         std::to_string(wire.refused) + " refused");
-  bad += verdict(heap_calls == 0, arm.name + " asks the heap for nothing",
+  bad += verdict(heap_calls == 0, arm.name + " allocates no memory",
                  std::to_string(heap_calls) + " calls of new and delete in all ticks");
   bad += verdict(open_descriptors() == descriptors, arm.name + " closed",
                  std::to_string(open_descriptors() - descriptors) + " descriptors left open");
@@ -173,7 +173,7 @@ void order(const std::string& pipe, const std::string& line) {
   std::ofstream(pipe) << line << std::endl;
 }
 
-/// Ticks by hand, so that a check can look at every one and go on after a fault.
+/// Runs single ticks, so that a check can examine each one and continue after a fault.
 class Ticker {
  public:
   explicit Ticker(Bench& bench) : bench_(bench), due_ns_(bench.clock.now_ns()) {}
@@ -191,7 +191,7 @@ class Ticker {
     in_contact = command.touch.in_contact;
     ++ticks;
   }
-  /// Ticks until it is true, or too long.
+  /// Runs ticks until the condition is true, up to a maximum.
   template <class Condition>
   bool until(Condition&& condition, int ticks_max) {
     for (int i = 0; i < ticks_max; ++i) {
@@ -244,11 +244,11 @@ int replug(const VirtualArm& arm, const std::string& pipe) {
                  "zero force and '" + std::string(driver::name(bench.device->fault())) +
                      "' after " + std::to_string(ticker.ticks - begin) + " ticks");
 
-  // At the side: find the arm by its serial number and offer the new wire.
+  // In another thread: find the arm by its serial number and offer the new wire.
   std::atomic<bool> offered{false};
   std::string trouble;
   std::thread side([&] {
-    // The old entry may still be listed for a moment; take one that opens.
+    // The old entry may still be listed for a short time; use one that opens.
     for (int i = 0; i < 300 && !offered; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       const auto again = arm.find(arm.serial(), 1000);
@@ -280,25 +280,26 @@ int replug(const VirtualArm& arm, const std::string& pipe) {
         return ticker.in_contact;
       },
       3000);
-  bad += verdict(contact_again && force_before_asked == 0, arm.name + " idle until asked",
+  bad += verdict(contact_again && force_before_asked == 0, arm.name + " idle until activated",
                  std::to_string(force_before_asked) + " N in contact before");
-  // The hand of a simulated arm does not move it: its counters restart at its pose of now, which
-  // its home pose was. The check of the pose is the session's (replug_watch).
+  // The hand of a simulated arm does not move it, so its counters restart at its present pose,
+  // which was its home pose. The session checks the pose (replug_watch).
   bench.device->ask_to_activate(driver::HomeCheck::kPassed);
   const bool active = ticker.until([&] { return ticker.force > 0.2; }, 3000);
-  bad += verdict(active, arm.name + " active when asked", std::to_string(ticker.force) + " N");
+  bad +=
+      verdict(active, arm.name + " active after activation", std::to_string(ticker.force) + " N");
   return bad;
 }
 
-/// Says whether a fault leaves the driver without reports, so that it must stop.
+/// Returns whether the driver gets no reports during a fault, so that it must stop.
 bool must_stop(const VirtualArm& arm, const std::string& fault) {
-  // An arm that answers only is silent when its messages are lost.
+  // An arm that only answers messages is silent if its messages are lost.
   if (fault.starts_with("lost out")) return arm.answers();
   if (fault.find(" out") != std::string::npos) return false;
   if (fault.starts_with("lost")) return true;
-  // Behind a converter there is room for more bytes, which are no message and are skipped.
+  // A converter can deliver additional bytes, which are not a message and are skipped.
   if (fault.starts_with("long")) return !arm.is_falcon();
-  // The mbed board numbers its reports, so that an old one is known.
+  // The mbed board numbers its reports, so an old one is detected.
   if (fault.starts_with("stale")) return arm.name == "woodenhaptics";
   return fault.starts_with("silence") || fault.starts_with("short") || fault.starts_with("stall");
 }
@@ -326,7 +327,7 @@ int fault(const VirtualArm& arm, const std::string& pipe, const std::string& lin
   order(pipe, "heal");
   const driver::WireCounters after = bench.device->wire_counters();
   const driver::Fault named = bench.device->fault();
-  // Silence counts from 20 ms on; the order itself takes a tick or two to reach the arm.
+  // Silence is a fault after 20 ms; the command itself reaches the arm after one or two ticks.
   constexpr int kStopTicks = 30;
   const bool stop_kept =
       !must_stop(arm, line) || (stopped_after >= 0 && stopped_after <= kStopTicks);
@@ -340,10 +341,10 @@ int fault(const VirtualArm& arm, const std::string& pipe, const std::string& lin
                               more(after.refused, before.refused) + ", repeated " +
                               more(after.repeated, before.repeated);
   const std::string stop =
-      stopped_after >= 0 ? std::to_string(stopped_after) : std::string("goes on");
+      stopped_after >= 0 ? std::to_string(stopped_after) : std::string("continues");
   const std::string name(driver::name(named));
-  // For the table of all cells: arm, fault, what the driver calls it, ticks to zero force, what is
-  // promised, force, counters, longest tick.
+  // For the table of all cells: arm, fault, name of the fault in the driver, ticks to zero force,
+  // promise, force, counters, longest tick.
   std::printf("CELL %s|%s|%s|%s|%s|%.3f|%s|%lld\n", arm.name.c_str(), line.c_str(), name.c_str(),
               stop.c_str(), must_stop(arm, line) ? "zero in 30" : "within 3 N", ticker.force_max,
               counted.c_str(), static_cast<long long>(ticker.longest_ns / 1000));
@@ -395,7 +396,7 @@ int run(const std::vector<std::string>& words) {
     arm.firmware = word(4);
     return fault(arm, word(2), word(3));
   }
-  return verdict(false, what, "is no check");
+  return verdict(false, what, "is not a known check");
 }
 
 }  // namespace

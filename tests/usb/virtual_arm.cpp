@@ -20,7 +20,7 @@ driver::Result<void> home(driver::SerialLine& line) {
   for (int i = 0; i < 5000 && !state.done(); ++i) {
     state = driver::falcon::home_once(line, state.homed);
   }
-  if (!state.done()) return driver::Error{"The Falcon did not find its home."};
+  if (!state.done()) return driver::Error{"The Falcon did not find its home position."};
   return {};
 }
 
@@ -46,7 +46,7 @@ std::string VirtualArm::serial() const {
   return is_falcon() ? "SIM0001" : name == "polhem-64" ? "1234560" : "0123456789";
 }
 
-// Only one board is plugged in at a time, so the product id tells which it is.
+// Only one board is plugged in at a time, so the product id identifies it.
 driver::Result<driver::FoundArm> VirtualArm::find(const std::string& serial, int timeout_ms) const {
   const std::uint16_t product = is_falcon() ? 0xcb48 : name == "polhem-64" ? 0x0486 : 0x0006;
   for (int waited_ms = 0; waited_ms < timeout_ms; waited_ms += 10) {

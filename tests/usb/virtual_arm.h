@@ -13,17 +13,18 @@
 
 namespace thimble::usb_test {
 
-/// One of the arms that `thimble plug` exports, as a driver opens it: by what the kernel shows.
+/// One of the arms that `thimble plug` exports, opened like by a driver: through its nodes in the
+/// kernel.
 struct VirtualArm {
   std::string name;
-  std::string firmware;  ///< For the Falcon: the file to upload.
+  std::string firmware;  ///< Firmware file of the Falcon.
 
   bool is_falcon() const { return name == "falcon"; }
   /// Returns whether it sends reports only after messages.
   bool answers() const { return name != "woodenhaptics"; }
   /// Returns the bytes of its messages, 0 for a Falcon.
   std::size_t message_size() const;
-  /// Returns the serial number that its board tells.
+  /// Returns the serial number that its board reports.
   std::string serial() const;
   std::unique_ptr<const driver::Arm> protocol() const;
 
@@ -31,7 +32,7 @@ struct VirtualArm {
   driver::Result<driver::FoundArm> find(const std::string& serial = {},
                                         int timeout_ms = 5000) const;
 
-  /// Opens the wire to it; boots and homes a Falcon, whose grip the simulated hand moves.
+  /// Opens the wire to it. Boots and homes a Falcon, whose grip is moved by the simulated hand.
   driver::Result<std::unique_ptr<driver::Transport>> open(const driver::FoundArm& found,
                                                           const driver::Clock& clock) const;
 };
@@ -39,15 +40,15 @@ struct VirtualArm {
 /// Returns the limits under which all checks run.
 driver::DeviceSettings check_settings();
 
-/// A wall across the base's z, a spring of 300 N/m. The simulated hand goes up and down once a
-/// second by 15 mm or more; the wall stands 19 mm below the highest place that the tip has reached,
-/// so that it is the same wherever the hand was when the check began. It rises slowly enough that a
-/// spoilt report does not carry it away.
+/// A wall normal to the base's z axis, a spring of 300 N/m. The simulated hand moves up and down
+/// once a second by 15 mm or more. The wall is 19 mm below the highest position of the tip, so it
+/// does not depend on the position of the hand at the start of the check. It rises slowly, so that
+/// a corrupt report does not move it far.
 class Wall {
  public:
   static constexpr double kStiffness = 300;   // N/m
   static constexpr double kBelow = 0.019;     // m
-  static constexpr double kRiseMax = 0.0002;  // m in a tick; the hand moves at 0.13 mm in one
+  static constexpr double kRiseMax = 0.0002;  // m per tick; the hand moves 0.13 mm per tick
 
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
     const double height = state.p_WT.z();

@@ -7,7 +7,7 @@
 # in WORK_DIR/faults.md.
 #
 # The machine counts instructions instead of time (-icount): one instruction is 4 ns, and idle time
-# is skipped. So a busy computer makes the test slower, never different. In the long form a second
+# is skipped. So a busy computer makes the test slower and never changes its result. In the long form a second
 # machine identifies arms with hidden constants (identify.sh).
 set -euo pipefail
 thimble=$1 check=$2 source=$3 work=$4 programs=$5
@@ -16,7 +16,7 @@ long=${THIMBLE_LONG:+--long}
 
 skip() {
   echo "SKIPPED: the USB arms were NOT tested through a kernel: $1" >&2
-  echo "  tests/usb/setup.sh fetches what it takes." >&2
+  echo "  Run tests/usb/setup.sh to install the dependencies." >&2
   exit 77
 }
 [ "$(uname -m)" = x86_64 ] || skip "it needs an x86_64 machine"
@@ -120,7 +120,7 @@ boot() { # NAME SHIFT LIMIT_S SETTING...
   fi
   grep -aE '^(PASS|FAIL|FIGURE|NOTE|END)' "$log" || true
   grep -aq '^END' "$log" && return
-  echo "FAIL: the machine did not come to its end (status $status). Its last words:" >&2
+  echo "FAIL: the machine did not finish (status $status). The end of its log:" >&2
   tail -n 30 "$log" >&2
   exit 1
 }
@@ -148,7 +148,7 @@ if [ -n "$identified" ]; then
   boot identified 0 $((3 * limit)) ticks=$ticks identify="$identified"
   logs="$logs $work/identified.log"
 fi
-[ -n "$logs" ] || skip "no arm was named"
+[ -n "$logs" ] || skip "no arm is selected"
 { grep -ahE '^FIGURE' $logs || true; } | awk '
   BEGIN { print "[" }
   { printf "%s  {\"name\": \"usb.%s\", \"value\": %s, \"unit\": \"%s\"}", (NR > 1 ? ",\n" : ""), $2, $3, $4 }
@@ -161,5 +161,5 @@ fi
 } >"$work/faults.md"
 failed=$(cat $logs | grep -ac '^FAIL' || true)
 passed=$(cat $logs | grep -ac '^PASS' || true)
-echo "$passed passed, $failed failed; whole log: $logs"
+echo "$passed passed, $failed failed; complete log: $logs"
 [ "$failed" = 0 ] && [ "$passed" -gt 0 ]

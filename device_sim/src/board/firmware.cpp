@@ -43,12 +43,12 @@ driver::Result<Firmware> Firmware::make(const driver::ArmModel& real,
   if (settings.speaks == driver::ArmKind::kFalcon ||
       settings.speaks == driver::ArmKind::kUnsupported) {
     return driver::Error{
-        "The simulated firmware speaks what a board says by itself: 14-byte reports, 8-byte "
-        "reports "
-        "or text lines."};
+        "The simulated firmware supports only wires on which a board sends by itself: 14-byte "
+        "reports, 8-byte reports or text lines."};
   }
   if (!(settings.missed_edges >= 0 && settings.missed_edges <= 1)) {
-    return driver::Error{"The simulated firmware's missed_edges must be a chance from 0 to 1."};
+    return driver::Error{
+        "The simulated firmware's missed_edges must be a probability from 0 to 1."};
   }
   if (settings.report_period_ns <= 0) {
     return driver::Error{"The simulated firmware's report period must be above zero (ns)."};
@@ -63,7 +63,7 @@ driver::Result<Firmware> Firmware::make(const driver::ArmModel& real,
     const double step = model.step(static_cast<std::size_t>(joint));
     if (step > 0 && step < HUGE_VAL) continue;
     return driver::Error{
-        "The simulated arm's encoders need counts and ratios above zero; set them in the arm "
+        "The simulated arm's encoders need counts and ratios above zero. Set them in the arm "
         "file."};
   }
   return Firmware(model, settings);

@@ -11,8 +11,8 @@ driver::Result<void> WiringSettings::check() const {
                     encoder_gain.allFinite() && motor_gain.allFinite();
   if (good) return {};
   return driver::Error{
-      "The simulated arm's wiring names a joint that is not there or a gain that is not finite; "
-      "joints are 0, 1 and 2."};
+      "The simulated arm's wiring has an unknown joint or a gain that is not finite. Joints are 0, "
+      "1 and 2."};
 }
 
 }  // namespace thimble::device_sim

@@ -9,16 +9,16 @@ namespace thimble::device_sim {
 
 driver::Result<HandPath> HandPath::make(std::vector<Point> points) {
   if (points.empty()) {
-    return driver::Error{"A hand's path needs at least one point: where the hand begins."};
+    return driver::Error{"The hand's path needs at least one point: the start of the hand."};
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::string which = "Point " + std::to_string(i) + " of the hand's path ";
     if (!std::isfinite(points[i].time) || !points[i].p_BH.allFinite()) {
-      return driver::Error{which + "is not finite; give its time (s) and place (m) as numbers."};
+      return driver::Error{which + "is not finite. Set its time (s) and position (m) to numbers."};
     }
     if (i > 0 && !(points[i].time > points[i - 1].time)) {
       return driver::Error{which +
-                           "does not come after the one before it; let its times grow (s)."};
+                           "is not later than the point before it. Its times (s) must increase."};
     }
   }
   return HandPath(std::move(points));

@@ -21,8 +21,8 @@ driver::Result<ArmPlant> ArmPlant::make(const driver::SerialArm& arm,
   if (!dynamics) return dynamics.error();
   if (!(is_positive(arm.length_b) && is_positive(arm.length_c) && std::isfinite(arm.height))) {
     return driver::Error{
-        "The simulated arm's links must have finite lengths above zero; set them in its geometry "
-        "(m)."};
+        "The simulated arm's links must have finite lengths above zero (m). Set them in its "
+        "geometry."};
   }
   if (!is_positive(motors.current_max)) {
     return driver::Error{"The simulated arm's current_max must be finite and above zero (A)."};
@@ -35,7 +35,8 @@ driver::Result<ArmPlant> ArmPlant::make(const driver::SerialArm& arm,
   }
   if (!made.pose_.within_reach()) {
     return driver::Error{
-        "The simulated arm cannot reach its starting point; start the hand's path within reach."};
+        "The simulated arm cannot reach its starting point. Start the hand's path inside the arm's "
+        "workspace."};
   }
   return made;
 }

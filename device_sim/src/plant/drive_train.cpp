@@ -45,18 +45,20 @@ driver::Result<DriveTrain> DriveTrain::make(const DriveTrainSettings& settings,
   const bool wavy = !settings.cogging.isZero(0) || !settings.ripple.isZero(0);
   if (!(settings.periods_per_turn >= 0 && settings.periods_per_turn < HUGE_VAL) ||
       (wavy && settings.periods_per_turn == 0)) {
-    return wrong("periods_per_turn must be finite, and above zero with cogging or ripple");
+    return wrong("periods_per_turn must be finite, and above zero if cogging or ripple is set");
   }
   if (!settings.cogging_phase.allFinite() || !settings.ripple_phase.allFinite()) {
     return wrong("cogging_phase and ripple_phase must be finite (rad)");
   }
   if (settings.compliant()) {
     if (!((settings.stiffness.array() > 0).all() && (settings.inertia.array() > 0).all())) {
-      return wrong("stiffness needs a value above zero for each joint, and so does inertia then");
+      return wrong(
+          "stiffness must be above zero for all joints or for none; with stiffness, inertia must "
+          "be above zero for all joints");
     }
   } else if (!(settings.inertia.isZero(0) && settings.damping.isZero(0) &&
                settings.play.isZero(0))) {
-    return wrong("inertia, damping and play need a stiffness of the cable");
+    return wrong("inertia, damping and play require a stiffness of the cable");
   }
   std::optional<MotorHeat> heat;
   if (settings.heat.named()) {

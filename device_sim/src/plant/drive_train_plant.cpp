@@ -19,7 +19,8 @@ driver::Result<DriveTrainPlant<Geometry, Tip>> DriveTrainPlant<Geometry, Tip>::m
   const auto pose = tip_pose(model.geometry, p_BT);
   if (!pose) {
     return driver::Error{
-        "The simulated arm cannot reach its starting point; start the hand's path within reach."};
+        "The simulated arm cannot reach its starting point. Start the hand's path inside the arm's "
+        "workspace."};
   }
   const auto unused = AxisDynamics::make(settings.plant, {});  // without elastic cables
   if (!unused) return unused.error();

@@ -39,8 +39,8 @@ Eigen::Vector3d velocity_beside_axes(const Eigen::Matrix3d& inertia,
     const Eigen::Vector3d sliding = inertia.inverse() * (momentum - most * v_before.cwiseSign());
     if ((sliding.array() * v_before.array() > 0).all()) return sliding;
   }
-  // It ends at once if the tip stays at rest, and soon if masses differ by less than ten times
-  // between directions.
+  // It ends after one round if the tip stays at rest, and after a few if masses differ by less than
+  // a factor of ten between directions.
   constexpr int kRounds = 60;
   constexpr double kEnough = 1e-12;
   Eigen::Vector3d v = v_before;
@@ -69,7 +69,8 @@ struct Line {
 };
 using Lines = std::array<Line, 6>;
 
-/// Lets each line in turn take as much of the motion `v` along it as it can.
+/// Relaxes each line in turn: its impulse reduces the motion `v` along it as far as its limit
+/// allows.
 void take_turns(Lines& lines, Eigen::Vector3d& v) noexcept {
   for (Line& line : lines) {
     if (!(line.most > 0)) continue;

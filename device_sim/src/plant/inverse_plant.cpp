@@ -22,7 +22,8 @@ driver::Result<InversePlant<Geometry>> InversePlant<Geometry>::make(
   const auto q = model.geometry.inverse(p_BT);
   if (!q) {
     return driver::Error{
-        "The simulated arm cannot reach its starting point; start the hand's path within reach."};
+        "The simulated arm cannot reach its starting point. Start the hand's path inside the arm's "
+        "workspace."};
   }
   InversePlant made(model, *dynamics, motors.current_max, p_BT, p_BH, *q);
   if (!made.torque_per_ampere_.allFinite()) {

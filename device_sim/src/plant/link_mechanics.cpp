@@ -36,14 +36,14 @@ driver::Result<void> check_links(const LinkSettings& links) {
   if (!((links.inertia.array() >= 0).all() &&
         square <= (1 + kRounding) * links.inertia[1] * links.inertia[2])) {
     return driver::Error{
-        "The simulated arm's links: inertia must not be negative, and the square of coupling at "
-        "most inertia B times inertia C; no links are otherwise."};
+        "The simulated arm's links are physically impossible: inertia must not be negative, and "
+        "the square of coupling must be at most inertia B times inertia C."};
   }
   const double most = links.inertia[0] + std::abs(links.yaw_b) + std::abs(links.yaw_c);
   if (!(least_about_yaw(links) >= -kRounding * most)) {
     return driver::Error{
-        "The simulated arm's links: with these yaw_b, yaw_c and coupling the inertia about the yaw "
-        "is below zero in some pose; no links are so."};
+        "The simulated arm's links are physically impossible: with these yaw_b, yaw_c and coupling "
+        "the inertia about the yaw axis is negative in some pose."};
   }
   return {};
 }

@@ -14,7 +14,7 @@ driver::Result<LoadedTip> LoadedTip::make(const PlantSettings& bare, const HandS
 driver::Result<void> LoadedTip::fix_mass(double mass, const Eigen::Vector3d& gravity_B) {
   // Written so that NaN is rejected.
   if (!(mass >= 0) || !gravity_B.allFinite()) {
-    return driver::Error{"The mass that is fixed to the tip must be 0 kg at least, and finite."};
+    return driver::Error{"The mass fixed to the tip must be finite and at least 0 kg."};
   }
   PlantSettings loaded = loaded_;
   loaded.mass = bare_mass_ + mass;

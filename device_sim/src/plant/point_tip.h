@@ -28,7 +28,7 @@ class THIMBLE_EXPORT PointTip {
     const auto dynamics = AxisDynamics::make(settings.plant, settings.hand);
     if (!dynamics) return dynamics.error();
     if (settings.drive_train.joints_rub()) {
-      return driver::Error{"Joints that rub need a tip that knows of them (LinkedTip)."};
+      return driver::Error{"Friction of the joints requires a tip model with joints (LinkedTip)."};
     }
     return PointTip(*dynamics, p_BT);
   }

@@ -94,7 +94,7 @@ SimulatedArmSettings with_arm(SimulatedArmSettings board, const ShelfArm& arm) {
 
 driver::Error other_build(std::string_view name) {
   return driver::Error{"The board '" + std::string(name) +
-                       "' drives arms of another build than that of the arm file."};
+                       "' does not match the geometry of the arm file."};
 }
 
 template <class AnyArm>
@@ -176,8 +176,8 @@ driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
   for (const ShelfEntry& entry : kShelf) {
     names += (names.empty() ? "" : ", ") + std::string(entry.name);
   }
-  return driver::Error{"There is no simulated USB arm '" + std::string(name) +
-                       "'; there are: " + names + "."};
+  return driver::Error{"Unknown simulated USB arm '" + std::string(name) +
+                       "'; known arms: " + names + "."};
 }
 
 }  // namespace thimble::device_sim::usb

@@ -12,7 +12,7 @@ namespace thimble::device_sim::usb {
 namespace {
 
 // The hand pulls the grip out and pushes it in; the legs pass their homes within 15 mm of the
-// middle, whatever the rest of the path is.
+// middle, for any rest of the path.
 constexpr double kHomingReach = 0.020;  // m
 constexpr double kHomingStroke = 0.5;   // s from one end to the other
 // A pinch grip [M DEVICES 3].
@@ -82,7 +82,7 @@ driver::Result<void> SimulatedFalcon::bring_up(std::vector<std::byte> firmware,
   }
   if (!state.done()) {
     return driver::Error{
-        "The simulated Falcon was not homed; its hand must begin inside of its workspace."};
+        "The simulated Falcon was not homed. Start its hand inside the workspace."};
   }
   // The arm's frames continue from here; the hand's path begins with one of them.
   begin_ns_ = (std::max(bus.time_ns(), end_ns) / FtdiBus::kFrame_ns + 1) * FtdiBus::kFrame_ns;

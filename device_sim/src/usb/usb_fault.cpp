@@ -35,8 +35,8 @@ driver::Error bad(std::string_view word, const char* why) {
   std::string text(1, '\'');
   text.append(word).append("' ").append(why);
   text.append(
-      ". A fault is: KIND [in|out] [after=FRAMES] [for=FRAMES] [rate=CHANCE], KIND one of stall, "
-      "short, long, torn, stale, duplicate, silence, bit_errors, unplug, lost.");
+      ". A fault is: KIND [in|out] [after=FRAMES] [for=FRAMES] [rate=CHANCE]. KIND is one of "
+      "stall, short, long, torn, stale, duplicate, silence, bit_errors, unplug, lost.");
   return {text};
 }
 
@@ -68,10 +68,10 @@ driver::Result<FaultOrder> parse_fault(std::string_view line) {
       }
     } else if (word.starts_with("rate=")) {
       if (!parse(word.substr(5), order.rate) || !(order.rate >= 0 && order.rate <= 1)) {
-        return bad(word, "needs a chance from 0 to 1");
+        return bad(word, "needs a probability from 0 to 1");
       }
     } else {
-      return bad(word, "is not understood");
+      return bad(word, "is not a known option of a fault");
     }
   }
   return order;

@@ -49,10 +49,10 @@ driver::Result<std::unique_ptr<UsbipServer>> UsbipServer::open(
   address.sin_port = htons(settings.port);
   if (inet_pton(AF_INET, settings.address.c_str(), &address.sin_addr) != 1) {
     return driver::Error{"'" + settings.address +
-                         "' is not an IPv4 address; 127.0.0.1 serves this machine only."};
+                         "' is not an IPv4 address. Use 127.0.0.1 to serve this machine only."};
   }
   server->listener_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (server->listener_ < 0) return trouble("No socket for the USB/IP server");
+  if (server->listener_ < 0) return trouble("Cannot create a socket for the USB/IP server");
   const int yes = 1;
   setsockopt(server->listener_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   socklen_t size = sizeof address;
@@ -60,7 +60,7 @@ driver::Result<std::unique_ptr<UsbipServer>> UsbipServer::open(
       listen(server->listener_, 8) != 0 ||
       getsockname(server->listener_, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
     return trouble("Cannot listen on " + settings.address + ":" + std::to_string(settings.port) +
-                   "; choose another port by --port, or end the other USB/IP server");
+                   "; select another port by --port, or end the other USB/IP server");
   }
   server->port_ = ntohs(address.sin_port);
   return server;

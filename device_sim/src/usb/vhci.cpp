@@ -42,8 +42,8 @@ driver::Result<std::string> read_text(const std::filesystem::path& file) {
   const Descriptor in(open(file.c_str(), O_RDONLY | O_CLOEXEC));
   if (in.number < 0) {
     return driver::Error{
-        "This kernel shows no virtual USB host. As root: modprobe vhci-hcd (Debian: in the "
-        "kernel's own package). Then attach again."};
+        "This kernel has no virtual USB host. Run as root: modprobe vhci-hcd (Debian: part of the "
+        "kernel package). Then attach again."};
   }
   std::array<char, 4096> text;
   const ssize_t size = read(in.number, text.data(), text.size());
@@ -68,7 +68,7 @@ driver::Result<void> import_device(int socket, std::uint16_t port, const std::st
       encode_request({.kind = UsbipRequest::Kind::kImport, .bus_id = bus_id, .size = 0});
   if (send(socket, request.data(), request.size(), MSG_NOSIGNAL) !=
       static_cast<ssize_t>(request.size())) {
-    return trouble("Cannot ask the USB/IP server for the device");
+    return trouble("Cannot request the device from the USB/IP server");
   }
   std::array<std::byte, kImportReplySize> reply{};
   std::size_t size = 0;
@@ -79,8 +79,8 @@ driver::Result<void> import_device(int socket, std::uint16_t port, const std::st
   }
   const bool refused = size >= kImportRefusalSize && reply[7] != std::byte{0};
   if (size < reply.size() || refused) {
-    return driver::Error{"The USB/IP server does not give away the device " + bus_id +
-                         "; another client may have it."};
+    return driver::Error{"The USB/IP server refused the device " + bus_id +
+                         "; another client may use it."};
   }
   const timeval forever{0, 0};
   setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &forever, sizeof forever);
@@ -108,17 +108,17 @@ driver::Result<int> attach_to_kernel(std::uint16_t port, const std::string& bus_
   if (!status) return status.error();
   const std::optional<int> free_port = find_free_port(*status);
   if (!free_port) {
-    return driver::Error{"All ports of the virtual USB host are taken; detach a device first."};
+    return driver::Error{"All ports of the virtual USB host are in use. Detach a device first."};
   }
   const Descriptor attach(open((vhci / "attach").c_str(), O_WRONLY | O_CLOEXEC));
   if (attach.number < 0) {
     return driver::Error{
-        "Only root may attach a device to the kernel. Run the command as root, or let "
-        "root run: usbip attach -r 127.0.0.1 -b " +
+        "Only root can attach a device to the kernel. Run the command as root, or run as root: "
+        "usbip attach -r 127.0.0.1 -b " +
         bus_id + "."};
   }
   const Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  if (socket.number < 0) return trouble("No socket to the USB/IP server");
+  if (socket.number < 0) return trouble("Cannot create a socket to the USB/IP server");
   if (const auto imported = import_device(socket.number, port, bus_id); !imported) {
     return imported.error();
   }

@@ -44,7 +44,7 @@ Eigen::Vector3d towards(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
 /// - |f'| <= |f_last_W| + rise, which follows, and |f'| <= |f_W|. Both candidates end in the ball
 ///   about 0 through f_W: the first because the ball is convex, the second because it is the
 ///   nearest point to f_W of a convex set with 0 in it.
-/// - f'.v <= f_W.v, or f'.v is no more than that of the second candidate.
+/// - f'.v <= f_W.v, or f'.v is at most that of the second candidate.
 ///
 /// Verified by tests/unit/driver/gate/rise_limit_test.cpp. Real-time: safe.
 Eigen::Vector3d limit_rise(const Eigen::Vector3d& f_W, const Eigen::Vector3d& f_last_W,
@@ -196,7 +196,7 @@ GatedForce SafetyGate::pass(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d&
 
 GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT,
                                     double dt, const EnergyFlow& flow) noexcept {
-  // Energy already given is booked, whatever happens in this tick.
+  // Energy that was already given is booked, independent of this tick.
   observer_.book(flow);
   if (!(std::abs(flow.work) + flow.move_W.squaredNorm() < HUGE_VAL)) trip(Fault::kStateNotFinite);
   const double requested = f_T_W.norm();
@@ -219,8 +219,8 @@ GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::V
     counters_.energy_least = std::min(counters_.energy_least, observer_.energy());
     const Eigen::Vector3d damping_W = observer_.damping(v_WT, dt);
     // A damper within its bounds cannot stop a wall that keeps pushing slowly. So beyond the onset
-    // the force fades with the debt, whatever velocity is measured, and at twice the onset no force
-    // remains that could give energy. Energy from the hand restores the force.
+    // the force fades with the debt, independent of the measured velocity, and at twice the onset
+    // no force remains that could give energy. Energy from the hand restores the force.
     const double share = observer_.share(dt);
     if (share < 1 || (damping_W.array() != 0).any()) {
       f_W = share * (f_W - f_program_W_) + f_program_W_ + damping_W;

@@ -8,7 +8,7 @@ namespace thimble::driver {
 // Depth behind a wall over which an outward force fades, m. A force that ended at once would make
 // the tip oscillate across the wall. [chosen: 5 N, the max. of most arms here, fades like a spring
 // of 333 N/m. With the wall's 200 N/m, a latency of 3 ms makes that a negative damper of 1.6 N s/m;
-// the damping removes 1.5 N s/m on average, and the arm has friction of its own]
+// the damping removes 1.5 N s/m on average, and the arm has its own friction]
 constexpr double kFade = 0.015;
 
 WorkspaceWalls::WorkspaceWalls(const WallSettings& settings) noexcept

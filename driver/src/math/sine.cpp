@@ -73,7 +73,7 @@ double no_angle(double angle) noexcept {
   return angle - angle;
 }
 
-/// Whether rounding `v` gives one double even if the relative error of `v` is `doubt`.
+/// Returns whether `v` rounds to the same double for every relative error of `v` up to `doubt`.
 bool is_sure(DoubleDouble v, double doubt) noexcept {
   const double wrong = doubt * v.hi;
   return v.hi + (v.lo - wrong) == v.hi + (v.lo + wrong);

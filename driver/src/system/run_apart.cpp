@@ -96,7 +96,7 @@ std::string how_it_ended(int status, const ApartLimits& limits) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 2)
     return "needs more memory than its size allows";
-  return "breaks its reader";
+  return "crashes its reader";
 }
 
 }  // namespace
@@ -123,7 +123,7 @@ Result<ApartMemory> run_apart(const std::function<void(ApartWriter&)>& work,
   // Above the standard streams, which the child closes.
   const int result = made < 0 ? -1 : fcntl(made, F_DUPFD_CLOEXEC, 3);
   if (made >= 0) close(made);
-  if (result < 0) return Error{"finds no memory to be read in"};
+  if (result < 0) return Error{"cannot be read (no memory for the result)"};
   const std::uint64_t space = address_space();
   std::fflush(nullptr);
   const pid_t child = fork();
@@ -139,7 +139,7 @@ Result<ApartMemory> run_apart(const std::function<void(ApartWriter&)>& work,
   const auto size = static_cast<std::size_t>(there ? found.st_size : 0);
   void* const at = there ? mmap(nullptr, size, PROT_READ, MAP_SHARED, result, 0) : MAP_FAILED;
   close(result);
-  if (child < 0) return Error{"finds no process to be read by"};
+  if (child < 0) return Error{"cannot be read (no child process could be started)"};
   if (at == MAP_FAILED) return Error{how_it_ended(status, limits)};
   const auto* const bytes = static_cast<const std::byte*>(at);
   std::uint64_t written = 0;

@@ -102,9 +102,9 @@ Error cannot_open(const UsbAddress& address, int code) {
   const std::string where = "the USB device at bus " + std::to_string(address.bus) + ", device " +
                             std::to_string(address.device);
   if (code == LIBUSB_ERROR_ACCESS) {
-    return Error{"No access to " + where +
-                 ": install udev/70-thimble.rules and plug the arm in again (see `thimble "
-                 "doctor`)."};
+    return Error{
+        "No access to " + where +
+        ". Install udev/70-thimble.rules and plug the arm in again (see `thimble doctor`)."};
   }
   if (code == LIBUSB_ERROR_BUSY) {
     return Error{in_use(usb_node(address))};

@@ -190,7 +190,7 @@ Result<std::unique_ptr<Transport>> start_ftdi_transport(FtdiUsb usb, const Frami
                                                         const Clock& clock) {
   auto transport = std::make_unique<FtdiTransport>(std::move(usb), framing, clock);
   if (!transport->start()) {
-    return Error{"The arm's USB converter cannot be read. Unplug the arm and plug it in again."};
+    return Error{"Cannot read the arm's USB converter. Unplug the arm and plug it in again."};
   }
   return std::unique_ptr<Transport>(std::move(transport));
 }

@@ -140,15 +140,17 @@ Result<std::unique_ptr<Transport>> open_hid_transport(const std::string& node,
   auto lock = NodeLock::take(node);
   if (!lock) return lock.error();
   const auto reports = ask_for_reports(lock->file());
-  if (!reports) return Error{node + " is no HID device that can be used."};
+  if (!reports)
+    return Error{node + " is not a usable HID device. Check the node with `thimble devices`."};
   if (message_size > 0 && reports->out_bytes != message_size) {
     return Error{node + " takes messages of " + std::to_string(reports->out_bytes) +
                  " bytes, but this arm's are " + std::to_string(message_size) +
-                 " long, so that it would throw all away. It is another board than the arm file "
-                 "says; see `thimble devices`."};
+                 " long, so the board would discard them. The board differs from the one in the "
+                 "arm file; see `thimble devices`."};
   }
   hid_device* device = hid_open_path(node.c_str());
-  if (device == nullptr) return Error{node + " is no HID device that can be used."};
+  if (device == nullptr)
+    return Error{node + " is not a usable HID device. Check the node with `thimble devices`."};
   return std::unique_ptr<Transport>(std::make_unique<HidTransport>(
       device, std::move(lock).value(), std::min(message_size, kReportCapacity), reports->out_bytes,
       clock));

@@ -67,7 +67,8 @@ std::optional<NodeHolder> find_holder(const std::string& node, const fs::path& r
 std::string in_use(const std::string& node) {
   if (const auto holder = find_holder(node)) return used_by(node, *holder);
   return node +
-         " is in use already, by this program or by one of another user. Close it and try again.";
+         " is already in use by this program or by a program of another user. Close it and try "
+         "again.";
 }
 
 NodeLock::~NodeLock() {
@@ -90,9 +91,9 @@ Result<NodeLock> NodeLock::take(const std::string& node) {
   lock.file_ = ::open(node.c_str(), O_RDWR | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   if (lock.file_ < 0) {
     if (errno == EACCES || errno == EPERM) {
-      return Error{"No access to " + node +
-                   ": install udev/70-thimble.rules and plug the arm in again (see `thimble "
-                   "doctor`)."};
+      return Error{
+          "No access to " + node +
+          ". Install udev/70-thimble.rules and plug the arm in again (see `thimble doctor`)."};
     }
     if (errno == EBUSY) return Error{in_use(node)};
     return Error{node + " cannot be opened (" + std::strerror(errno) +

@@ -121,7 +121,8 @@ Result<std::unique_ptr<Transport>> open_serial_transport(const std::string& node
   if (!lock) return lock.error();
   const int file = lock->file();
   termios settings{};
-  if (tcgetattr(file, &settings) != 0) return Error{node + " is no serial port."};
+  if (tcgetattr(file, &settings) != 0)
+    return Error{node + " is not a serial port. Check the node with `thimble devices`."};
   cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   cfsetspeed(&settings, B115200);  // USB serial boards ignore it [S woodenhaptics firmware]

@@ -28,8 +28,8 @@ Result<Opened> open_first(std::span<const std::string> files) {
     const bool there = std::filesystem::exists(file, missing) || !text.starts_with(file + ":");
     if (there && refused.empty()) refused = text;
   }
-  if (!refused.empty()) return Error{"The library cannot be opened: " + refused + "."};
-  return Error{"None of these libraries is there: " + looked_for + "."};
+  if (!refused.empty()) return Error{"Cannot open the library: " + refused + "."};
+  return Error{"None of these libraries was found: " + looked_for + "."};
 }
 
 }  // namespace

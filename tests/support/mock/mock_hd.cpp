@@ -26,7 +26,7 @@ void expect(bool right, const std::string& what) {
   if (!right) mock().wrong.push_back(what);
 }
 
-/// The scheduler: tasks by descending priority, once per millisecond.
+/// The scheduler: tasks, the largest priority first, once per millisecond.
 struct Task {
   unsigned (*call)(void*) = nullptr;
   void* data = nullptr;
@@ -44,7 +44,7 @@ Scheduler& scheduler() {
   return one;
 }
 
-/// Runs each task once, and removes those that are done.
+/// Runs each task once; those that are done are tasks no more.
 void run_tasks() {
   const std::lock_guard lock(scheduler().mutex);
   for (auto& [priority, entry] : scheduler().tasks) {
@@ -98,9 +98,10 @@ void hdDisableDevice(unsigned device) {
   const std::lock_guard tasks_lock(scheduler().mutex);
   const std::lock_guard lock(mock().mutex);
   expect(scheduler().tasks.empty(), "hdDisableDevice with a callback scheduled");
-  expect(device == kDevice && mock().open, "hdDisableDevice of a closed device");
+  expect(device == kDevice && mock().open, "hdDisableDevice of what is not open");
   expect(!mock().scheduler, "hdDisableDevice while the scheduler runs");
-  expect(mock().taken.empty() || mock().taken.back().isZero(0), "hdDisableDevice during a force");
+  expect(mock().taken.empty() || mock().taken.back().isZero(0),
+         "hdDisableDevice while a force stands");
   mock().open = mock().force_on = mock().asked_calibration = false;
   ++mock().closed;
 }
@@ -110,7 +111,7 @@ MockErrorInfo hdGetError() {
   return {code, 0, kDevice};
 }
 const char* hdGetErrorString(unsigned) {
-  return "the mock was set to fail";
+  return "failure requested by the test";
 }
 const char* hdGetString(unsigned) {
   return "Touch";
@@ -122,7 +123,7 @@ void hdGetIntegerv(unsigned name, int* values) {
     *values = mock().styles;
     return;
   }
-  expect(name == 0x2000, "hdGetIntegerv of an unknown parameter");
+  expect(name == 0x2000, "hdGetIntegerv of another number");
   expect(mock().frame, "hdGetIntegerv outside of a frame");
   *values = mock().arm.buttons;
 }
@@ -147,15 +148,15 @@ void hdGetDoublev(unsigned name, double* values) {
       values[12 + column] = 1000 * arm.p_BT[column];
     }
   } else {
-    expect(false, "hdGetDoublev of an unknown parameter");
+    expect(false, "hdGetDoublev of another number");
   }
 }
 void hdSetDoublev(unsigned name, const double* values) {
   const std::lock_guard lock(mock().mutex);
-  expect(name == 0x2700, "hdSetDoublev of an unknown parameter");
+  expect(name == 0x2700, "hdSetDoublev of another number");
   expect(mock().frame, "hdSetDoublev outside of a frame");
   const Eigen::Vector3d f(values[0], values[1], values[2]);
-  expect(f.allFinite(), "a force that is NaN or infinite");
+  expect(f.allFinite(), "a force that is no number");
   expect(f.isZero(0) || mock().force_on, "a force before forces are on");
   expect(f.norm() <= mock().nominal + 1e-9, "more than the nominal force");
   mock().arm.f_T_B =
@@ -164,7 +165,7 @@ void hdSetDoublev(unsigned name, const double* values) {
 }
 void hdEnable(unsigned capability) {
   const std::lock_guard lock(mock().mutex);
-  expect(capability == 0x4000, "hdEnable of an unknown capability");
+  expect(capability == 0x4000, "hdEnable of another capability");
   expect(mock().open && mock().asked_calibration && mock().calibrated,
          "forces on before the arm is calibrated");
   mock().force_on = true;
@@ -192,7 +193,7 @@ unsigned hdCheckCalibration() {
 void hdUpdateCalibration(unsigned style) {
   const std::lock_guard lock(mock().mutex);
   expect(mock().open && mock().scheduler, "hdUpdateCalibration without a scheduler");
-  expect((static_cast<int>(style) & mock().styles) != 0, "an unsupported style");
+  expect((static_cast<int>(style) & mock().styles) != 0, "a style that the device does not have");
   ++mock().calibrations;
   mock().calibrated = true;
 }
@@ -218,7 +219,7 @@ unsigned long hdScheduleAsynchronous(unsigned (*call)(void*), void* data, unsign
   {
     const std::lock_guard mock_lock(mock().mutex);
     expect(mock().open, "hdScheduleAsynchronous before hdInitDevice");
-    expect(call != nullptr, "hdScheduleAsynchronous without a callback");
+    expect(call != nullptr, "hdScheduleAsynchronous of nothing");
   }
   if (call == nullptr) return 0;
   const unsigned long handle = scheduler().next++;
@@ -230,7 +231,7 @@ void hdUnschedule(unsigned long handle) {
   const std::size_t erased = std::erase_if(
       scheduler().tasks, [handle](const auto& task) { return task.second.first == handle; });
   const std::lock_guard mock_lock(mock().mutex);
-  expect(erased == 1, "hdUnschedule of an unknown task");
+  expect(erased == 1, "hdUnschedule of no task");
 }
 
 }  // extern "C"

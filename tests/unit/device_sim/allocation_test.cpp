@@ -7,7 +7,7 @@
 namespace thimble::device_sim {
 namespace {
 
-TEST(SimulatedArm, NeverAllocatesOnceItIsBuilt) {
+TEST(SimulatedArm, DoesNotAllocateAfterConstruction) {
   SimulatedArmSettings settings = phantom_like();
   settings.hand.tremor_amplitude = 1e-3;
   settings.wire = {.delay_in_ns = 200'000, .delay_out_ns = 300'000};

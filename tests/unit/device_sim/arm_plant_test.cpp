@@ -25,7 +25,7 @@ ArmPlant plant_with(const SimulatedArmSettings& settings, const Eigen::Vector3d&
   return made_with(settings, p_BT).value();
 }
 
-// Currents that make this force in the pose q, A.
+// Returns the currents (A) that exert this force in the pose q.
 Eigen::Vector3d currents_for(const Eigen::Vector3d& f_T_B, const Eigen::Vector3d& q) {
   const auto model = support::vintage_model();
   Eigen::Vector3d amperes = model.geometry.jacobian(q).transpose() * f_T_B;
@@ -36,7 +36,7 @@ Eigen::Vector3d currents_for(const Eigen::Vector3d& f_T_B, const Eigen::Vector3d
   return amperes;
 }
 
-TEST(ArmPlant, PushesTheTipWithTheForceThatTheCurrentsMean) {
+TEST(ArmPlant, CurrentsExertTheExpectedTipForce) {
   const Eigen::Vector3d q(0.3, 1.4, 0.2);
   const Eigen::Vector3d p_BT = support::vintage_model().geometry.forward(q);
   const Eigen::Vector3d f_T_B(0.5, -0.7, 1.1);
@@ -56,7 +56,7 @@ TEST(ArmPlant, SaturatesEachMotor) {
   EXPECT_EQ(plant.currents(), Eigen::Vector3d(0, 3, 0));
 }
 
-// Moves a free arm fast under constant torque for 40 ms in sub-steps of this length.
+// Accelerates a free arm under constant torque for 40 ms, in sub-steps of the given length.
 Eigen::Vector3d oscillation(std::int64_t step_ns) {
   ArmPlant plant = plant_with(free_arm(), home_tip());
   plant.set_currents({1.0, 0.8, -0.6});
@@ -64,7 +64,7 @@ Eigen::Vector3d oscillation(std::int64_t step_ns) {
   return plant.p_BT();
 }
 
-TEST(ArmPlant, ErrsWithTheSquareOfTheSubStepAlone) {
+TEST(ArmPlant, ErrorIsSecondOrderInTheSubStep) {
   const Eigen::Vector3d truth = oscillation(1'000);
   const double coarse = (oscillation(1'000'000) - truth).norm();
   const double fine = (oscillation(500'000) - truth).norm();
@@ -73,7 +73,7 @@ TEST(ArmPlant, ErrsWithTheSquareOfTheSubStepAlone) {
   EXPECT_NEAR(coarse / fine, 4, 0.4);
 }
 
-TEST(ArmPlant, TurnsTorqueIntoTheKineticEnergyThatItsWorkPays) {
+TEST(ArmPlant, KineticEnergyEqualsTheWorkOfTheTorque) {
   ArmPlant plant = plant_with(free_arm(), home_tip());
   const Eigen::Vector3d amperes(1.0, 0.8, -0.6);
   plant.set_currents(amperes);

@@ -42,7 +42,7 @@ Case random_case(support::Random& random) {
   return c;
 }
 
-TEST(AxisDynamics, EqualsAnIndependentTruthThroughAllEvents) {
+TEST(AxisDynamics, MatchesAnIndependentIntegratorThroughAllEvents) {
   support::Random random(3);
   std::uint64_t reversals = 0, breakaways = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -61,12 +61,12 @@ TEST(AxisDynamics, EqualsAnIndependentTruthThroughAllEvents) {
     reversals += axis.counters().reversals;
     breakaways += axis.counters().breakaways;
   }
-  // The cases must have met what they are here to test.
+  // The cases must include the events that they test.
   EXPECT_GT(reversals, 200U);
   EXPECT_GT(breakaways, 10U);
 }
 
-TEST(AxisDynamics, GivesTheSameForAWholeStepAndForTwoParts) {
+TEST(AxisDynamics, SplittingAStepDoesNotChangeTheResult) {
   support::Random random(4);
   for (int i = 0; i < 20000; ++i) {
     const Case c = random_case(random);
@@ -100,7 +100,7 @@ TEST(AxisDynamics, FollowsTheClosedFormOfADampedOscillator) {
   }
 }
 
-TEST(AxisDynamics, StopsAfterTheWayThatCoulombFrictionAllows) {
+TEST(AxisDynamics, CoulombFrictionStopsAfterTheExpectedDistance) {
   const PlantSettings plant{.mass = 0.075, .viscous = 0, .coulomb = 0.04};
   AxisDynamics axis = AxisDynamics::make(plant, {}).value();
   for (const double v : {1e-6, 1e-3, 0.01, 0.2, 0.9}) {
@@ -129,7 +129,7 @@ TEST(AxisDynamics, KeepsAHeldAxisExactlyAtRest) {
   EXPECT_GT(state.v, 0);
 }
 
-TEST(AxisDynamics, BreaksLooseAtTheMomentThatTheMovingAnchorSays) {
+TEST(AxisDynamics, BreaksLooseAtTheExpectedTime) {
   const PlantSettings plant{.mass = 0.1, .viscous = 0, .coulomb = 0.04};
   HandSettings hand;
   hand.stiffness = 100;
@@ -143,9 +143,9 @@ TEST(AxisDynamics, BreaksLooseAtTheMomentThatTheMovingAnchorSays) {
   EXPECT_EQ(axis.counters().breakaways, 1U);
 }
 
-TEST(AxisDynamics, FindsAReversalThatBothEndsOfAStepHide) {
-  // Thrown against the spring of a hand that runs away, the axis stops, is held and leaves again in
-  // its old direction, all within one step.
+TEST(AxisDynamics, FindsAReversalInsideAStep) {
+  // The axis moves against the spring of a receding hand. It stops, is held by friction and moves
+  // on in its old direction, all within one step.
   const PlantSettings plant{.mass = 0.01, .viscous = 0, .coulomb = 0.05};
   HandSettings hand;
   hand.stiffness = 2000;
@@ -180,7 +180,7 @@ TEST(AxisDynamics, NeverGainsEnergyWithoutADrive) {
   }
 }
 
-TEST(AxisDynamics, IsMirrorSymmetricToTheBit) {
+TEST(AxisDynamics, MirroredMotionIsBitIdentical) {
   support::Random random(6);
   for (int i = 0; i < 2000; ++i) {
     const Case c = random_case(random);
@@ -210,7 +210,7 @@ TEST(AxisDynamics, StaysBoundedForVeryStiffAndVeryDampedHands) {
   }
 }
 
-TEST(AxisDynamics, DoesNothingWithoutTime) {
+TEST(AxisDynamics, ZeroStepChangesNothing) {
   AxisDynamics axis = AxisDynamics::make({.mass = 0.1, .viscous = 0, .coulomb = 0}, {}).value();
   AxisState state{.x = 1, .v = 2};
   axis.step(state, {.force = 3}, 0);

@@ -6,8 +6,8 @@
 
 namespace thimble::device_sim {
 
-/// An independent truth: Runge-Kutta of order 4 in extended precision with tiny steps, cut by
-/// bisection where the velocity changes its sign or a held axis breaks loose.
+/// An independent reference: Runge-Kutta of order 4 in extended precision with tiny steps.
+/// Bisection finds the times at which the velocity changes its sign or a held axis breaks loose.
 class AxisReference {
  public:
   AxisReference(const PlantSettings& plant, const HandSettings& hand, const AxisDrive& drive)

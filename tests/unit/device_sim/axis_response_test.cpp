@@ -11,8 +11,8 @@
 namespace thimble::device_sim {
 namespace {
 
-// The closed forms, in extended precision and regime by regime: everything that AxisResponse
-// avoids.
+// The closed forms in extended precision, one per damping regime; AxisResponse uses a different
+// method.
 long double exact_impulse(long double damping, long double stiffness, long double t) {
   const long double gamma = damping / 2, square = gamma * gamma - stiffness;
   const long double decay = std::exp(-gamma * t);
@@ -41,7 +41,7 @@ TEST(AxisResponse, EqualsTheClosedFormInEveryRegime) {
   }
 }
 
-TEST(AxisResponse, CrossesCriticalDampingWithoutAStep) {
+TEST(AxisResponse, IsContinuousAcrossCriticalDamping) {
   const double damping = 200, t = 1e-3;
   const AxisResponse critical = AxisResponse::at(damping, 1e4, t);
   EXPECT_NEAR(critical.impulse, t * std::exp(-100 * t), 1e-18);
@@ -62,7 +62,7 @@ TEST(AxisResponse, IsPolynomialForAFreeMass) {
   EXPECT_DOUBLE_EQ(response.second, 0.125 / 6);
 }
 
-TEST(AxisResponse, AddsUpTimesToRounding) {
+TEST(AxisResponse, ConsecutiveStepsEqualTheirSumWithinRounding) {
   support::Random random(2);
   for (int i = 0; i < 10000; ++i) {
     const double damping = random.uniform(0, 300), stiffness = random.uniform(0, 1e5);

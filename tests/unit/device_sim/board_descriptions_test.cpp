@@ -1,5 +1,5 @@
-// What the boards say of themselves, byte for byte as the sources of their libraries have it. The
-// bytes stand here a second time, typed from those sources and not from the code under test.
+// USB descriptors of the boards, byte for byte as in the sources of their libraries. The bytes were
+// typed from those sources, independently of the code under test.
 #include "usb/board_descriptions.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ std::string text_of(const UsbDescription& d, std::uint8_t index) {
   return text;
 }
 
-/// Asks a plugged arm for a descriptor as a host does.
+/// Requests a descriptor from a plugged arm, as a host does.
 std::vector<std::byte> asked(const char* name, std::uint8_t request_type, std::uint8_t kind,
                              std::uint16_t index) {
   auto arm = make_usb_arm(name, {});
@@ -55,7 +55,7 @@ std::vector<std::byte> raw_reports(unsigned in, unsigned out) {
 
 class MbedBoard : public testing::TestWithParam<std::pair<const char*, unsigned>> {};
 
-TEST_P(MbedBoard, SaysWhatTheUsbHidClassSays) {
+TEST_P(MbedBoard, DescriptorsMatchTheUsbHidClass) {
   const auto [name, size] = GetParam();
   EXPECT_EQ(
       asked(name, 0x80, kDeviceDescriptor, 0),
@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Boards, MbedBoard,
                            return std::string(param_info.param.first);
                          });
 
-TEST(TeensyBoard, SaysWhatRawHidSays) {
+TEST(TeensyBoard, DescriptorsMatchRawHid) {
   const char* const name = "polhem-64";
   EXPECT_EQ(
       asked(name, 0x80, kDeviceDescriptor, 0),
@@ -110,7 +110,7 @@ TEST(TeensyBoard, SaysWhatRawHidSays) {
       std::all_of(serial.begin(), serial.end(), [](char c) { return c >= '0' && c <= '9'; }));
 }
 
-TEST(BoardDescriptions, TellAnotherSerialNumberWhereOneIsAskedFor) {
+TEST(BoardDescriptions, UseTheRequestedSerialNumber) {
   EXPECT_EQ(text_of(mbed_hid_description(8, "77"), 3), "77");
   EXPECT_EQ(text_of(teensy_raw_hid_description("78"), 3), "78");
   EXPECT_EQ(text_of(falcon_description("79"), 3), "79");

@@ -14,7 +14,7 @@
 #include "thimble/driver/wire_link.h"
 #include "vintage_simulation.h"
 
-// What a simulated arm speaks is what its kind of arm speaks, and the driver's own arm understands.
+// The simulated arm uses the protocol of its kind of arm, and the driver decodes it.
 
 namespace thimble::device_sim {
 namespace {
@@ -36,7 +36,7 @@ BoardBytes newest(SimulatedArm& arm) {
   return report;
 }
 
-TEST(BoardWire, IsThatOfTheArm) {
+TEST(BoardWire, MatchesTheDecoderOfTheArm) {
   const auto woody = driver::hfab::woody_model();
   const Eigen::Vector3d home = woody.geometry.forward(woody.joint_angles({}));
   SimulatedArm eight =
@@ -65,7 +65,7 @@ TEST(BoardWire, IsThatOfTheArm) {
   EXPECT_EQ(newest(fourteen).size, driver::hfab::kReportSize);
 }
 
-TEST(BoardWire, DoesNotUnderstandTheMessagesOfOtherBoards) {
+TEST(BoardWire, RejectsMessagesOfOtherBoards) {
   const auto woody = driver::hfab::woody_model();
   const Eigen::Vector3d home = woody.geometry.forward(woody.joint_angles({}));
   for (const ArmKind kind : {ArmKind::kWoody, ArmKind::kHfabLine, ArmKind::kPolhem}) {
@@ -81,7 +81,7 @@ TEST(BoardWire, DoesNotUnderstandTheMessagesOfOtherBoards) {
   }
 }
 
-TEST(BoardWire, CarriesTheSameCountsInEveryLanguage) {
+TEST(BoardWire, CarriesTheSameCountsInEveryProtocol) {
   const auto model = support::vintage_model();
   const HandPath path =
       HandPath::make({{0, home_tip()}, {0.2, home_tip() + Eigen::Vector3d(0.02, -0.01, 0.03)}})
@@ -102,7 +102,7 @@ TEST(BoardWire, CarriesTheSameCountsInEveryLanguage) {
   }
 }
 
-TEST(BoardWire, CannotBeThatOfAFalcon) {
+TEST(BoardWire, RejectsTheProtocolOfAFalcon) {
   EXPECT_TRUE(refuses(SimulatedArm::make(support::vintage_model(), speaking(ArmKind::kFalcon),
                                          resting_at(home_tip())),
                       "14-byte reports"));
@@ -136,16 +136,16 @@ TEST(SimulatedGimbal, IsReadThroughTheBytesOfTheWire) {
       ASSERT_LE((sample.gimbal - arm.gimbal()).cwiseAbs().maxCoeff(), 0.5 * step + 1e-9) << k;
       const Eigen::Matrix3d R_true = model.geometry.last_link(arm.plant().q(), arm.plant().p_BT()) *
                                      model.gimbal->rotation(arm.gimbal());
-      // Three axes, half a step each, and the links' own steps.
+      // Half a step for each of three axes, and the steps of the links.
       ASSERT_LT((sample.R_BT - R_true).norm(), 3 * step) << k;
       if (k == 0) first = sample.R_BT;
       turned = std::max(turned, (sample.R_BT - first).norm());
     }
-    EXPECT_GT(turned, 1) << "a gimbal that does not turn shows nothing";
+    EXPECT_GT(turned, 1) << "a gimbal that does not turn proves nothing";
   }
 }
 
-TEST(SimulatedGimbal, IsPresetAsItsBoardDoesIt) {
+TEST(SimulatedGimbal, PresetMatchesTheBoard) {
   auto model = support::vintage_model();
   model.gimbal = driver::Gimbal{.counts_per_turn = {2000, 2000, 2000}};
   Firmware firmware = Firmware::make(arm_model(model), {}).value();

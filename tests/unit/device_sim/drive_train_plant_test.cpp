@@ -27,7 +27,7 @@ Eigen::Vector3d link_angles(const SerialDriveTrainPlant& plant) {
   return support::vintage_model().geometry.inverse(plant.p_BT()).value();
 }
 
-/// A free arm whose motors turn the links by cables that stretch.
+/// A free arm whose motors turn the links through elastic cables.
 SimulatedArmSettings compliant_arm(double damping = 0) {
   SimulatedArmSettings settings = free_arm();
   settings.drive_train.inertia.setConstant(1e-3);
@@ -59,7 +59,7 @@ TEST(DriveTrainPlant, RigidDriveTrainIsTheIdealArm) {
     plant.set_currents(amperes);
     ideal.set_currents(amperes);
     plant.step(home_tip(), kMillisecond);
-    // In sub-steps as short as the other's.
+    // In sub-steps as short as those of the other plant.
     for (int part = 0; part < 40; ++part) ideal.step(home_tip(), kMillisecond / 40);
     ASSERT_LT((plant.p_BT() - ideal.p_BT()).norm(), 1e-12);
     ASSERT_LT((plant.q() - ideal.q()).norm(), 1e-11);
@@ -67,7 +67,7 @@ TEST(DriveTrainPlant, RigidDriveTrainIsTheIdealArm) {
   EXPECT_GT((plant.p_BT() - home_tip()).norm(), 1e-3);
 }
 
-TEST(DriveTrainPlant, LetsCurrentsLagByTheirExactMap) {
+TEST(DriveTrainPlant, CurrentLagMatchesItsClosedForm) {
   constexpr double kLag = 2e-3, kAmperes = 1e-3;
   SimulatedArmSettings settings = free_arm();
   settings.drive_train.current_lag = kLag;
@@ -78,15 +78,15 @@ TEST(DriveTrainPlant, LetsCurrentsLagByTheirExactMap) {
     plant.step(home_tip(), kMillisecond);
     const double t = 1e-3 * k, risen = -std::expm1(-t / kLag);
     ASSERT_NEAR(plant.currents().x(), kAmperes * risen, 1e-15);
-    // From now on the tip moves along y by what the currents have added up to.
+    // From now on the motion of the tip along y is the integral of the currents.
     ASSERT_NEAR(plant.v_BT().y() / (a * (t - kLag * risen)), 1, 1e-6);
     const double way = a * (t * t / 2 - kLag * t + kLag * kLag * risen);
     ASSERT_NEAR((plant.p_BT() - home_tip()).y(), way, 5e-4 * std::abs(way));
   }
 }
 
-/// What the cable of the yaw is stretched by at a time (s) after its motor began to pull with
-/// kYawTorque times `amperes`, rad: a free oscillation of two masses.
+/// Returns the stretch (rad) of the yaw cable at a time (s) after its motor began to pull with
+/// kYawTorque times `amperes`: a free oscillation of two masses.
 double stretch_at(double t, double amperes, double damping) {
   const double per_inertia = 1 / 1e-3 + kYawTurn * kYawTurn / 0.1;
   const double w2 = 200 * per_inertia, decay = 0.5 * damping * per_inertia;
@@ -95,7 +95,7 @@ double stretch_at(double t, double amperes, double damping) {
   return still * (1 - std::exp(-decay * t) * (std::cos(w * t) + decay / w * std::sin(w * t)));
 }
 
-TEST(DriveTrainPlant, OscillatesAsTwoMassesOnACable) {
+TEST(DriveTrainPlant, OscillatesLikeTwoMassesOnACable) {
   for (const double damping : {0.0, 0.02, 0.1}) {
     SerialDriveTrainPlant plant = plant_with(compliant_arm(damping));
     constexpr double kAmperes = 1e-3;
@@ -110,9 +110,9 @@ TEST(DriveTrainPlant, OscillatesAsTwoMassesOnACable) {
   }
 }
 
-TEST(DriveTrainPlant, NeitherGainsNorLosesEnergyInItsCables) {
+TEST(DriveTrainPlant, CablesConserveEnergy) {
   SerialDriveTrainPlant plant = plant_with(compliant_arm());
-  // A push of 1 ms, and free from then on.
+  // A push of 1 ms, then free motion.
   plant.set_currents({0.02, 0.03, -0.01});
   plant.step(home_tip(), kMillisecond);
   plant.set_currents({0, 0, 0});
@@ -130,7 +130,7 @@ TEST(DriveTrainPlant, NeitherGainsNorLosesEnergyInItsCables) {
   EXPECT_NEAR(largest_stretch() / first, 1, 0.02);
 }
 
-TEST(DriveTrainPlant, CrossesItsPlayWithoutPullingTheTip) {
+TEST(DriveTrainPlant, MotorCrossesBacklashWithoutForceOnTheTip) {
   constexpr double kPlay = 2e-3;
   SimulatedArmSettings settings = compliant_arm(0.05);
   settings.drive_train.play.setConstant(kPlay);
@@ -145,7 +145,7 @@ TEST(DriveTrainPlant, CrossesItsPlayWithoutPullingTheTip) {
     for (int k = 0; k < 100'000; ++k) {
       const double before = stretched();
       plant.step(home_tip(), SerialDriveTrainPlant::kSubStep_ns);
-      // Well inside the play at both ends of the sub-step.
+      // Well inside the backlash at both ends of the sub-step.
       if (std::max(std::abs(before), std::abs(stretched())) > 0.4 * kPlay) continue;
       ++slack;
       ASSERT_EQ(plant.f_T_B().y(), 0);
@@ -156,7 +156,7 @@ TEST(DriveTrainPlant, CrossesItsPlayWithoutPullingTheTip) {
   EXPECT_NEAR(ends[0] - ends[1], kPlay + 2 * std::abs(kYawTorque) * 0.5 / 200, 1e-8);
 }
 
-TEST(DriveTrainPlant, HoldsItsMotorsByDryFriction) {
+TEST(DriveTrainPlant, DryFrictionHoldsTheMotors) {
   SimulatedArmSettings settings = compliant_arm(0.02);
   settings.drive_train.coulomb.setConstant(0.02);
   SerialDriveTrainPlant plant = plant_with(settings);
@@ -169,7 +169,7 @@ TEST(DriveTrainPlant, HoldsItsMotorsByDryFriction) {
   EXPECT_GT(plant.q()[0] - q[0], 1e-3);
 }
 
-TEST(DriveTrainPlant, MovesTheMassThatItsMotorsAddInEachPose) {
+TEST(DriveTrainPlant, MotorsAddApparentMassInEachPose) {
   for (const Eigen::Vector3d& p_BT :
        {home_tip(), Eigen::Vector3d(home_tip() + Eigen::Vector3d(0.06, -0.05, 0.04))}) {
     SimulatedArmSettings settings = compliant_arm(2);
@@ -192,7 +192,7 @@ TEST(DriveTrainPlant, MovesTheMassThatItsMotorsAddInEachPose) {
   }
 }
 
-TEST(DriveTrainPlant, SettlesTowardsThePolesOfItsMotors) {
+TEST(DriveTrainPlant, CoggingPullsMotorsTowardsTheirPoles) {
   constexpr double kCogging = 0.005, kPeriods = 7, kAngle = 2e-4;
   SimulatedArmSettings settings = free_arm();
   settings.drive_train.cogging.x() = kCogging;
@@ -220,7 +220,7 @@ TEST(DriveTrainPlant, TorqueRipplesWithTheMotorAngle) {
   }
 }
 
-TEST(DriveTrainPlant, TurnsCoggingAndRippleByTheirPhases) {
+TEST(DriveTrainPlant, PhasesShiftCoggingAndRipple) {
   SimulatedArmSettings settings = free_arm();
   settings.drive_train.cogging.x() = 0.001;
   settings.drive_train.cogging_phase.x() = 0.4;
@@ -249,7 +249,7 @@ TEST(DriveTrainPlant, StopsAtTheEndOfItsReachAndComesBack) {
   EXPECT_LT((plant.p_BT() - home_tip()).norm(), 1e-3);
 }
 
-TEST(DriveTrainPlant, RefusesWhatCannotBe) {
+TEST(DriveTrainPlant, RefusesImpossibleSettings) {
   const auto made_with = [](const std::function<void(SimulatedArmSettings&)>& change) {
     SimulatedArmSettings settings = compliant_arm();
     change(settings);
@@ -262,8 +262,8 @@ TEST(DriveTrainPlant, RefusesWhatCannotBe) {
   EXPECT_TRUE(refuses(made_with([](auto& s) { s.drive_train.inertia.z() = 0; }), "inertia"));
   EXPECT_TRUE(refuses(made_with([](auto& s) { s.drive_train.cogging.x() = 0.1; }), "periods"));
   EXPECT_TRUE(refuses(made_with([](auto& s) { s.drive_train.ripple_phase.z() = NAN; }), "phase"));
-  EXPECT_TRUE(
-      refuses(made_with([](auto& s) { s.drive_train.stiffness.setZero(); }), "need a stiffness"));
+  EXPECT_TRUE(refuses(made_with([](auto& s) { s.drive_train.stiffness.setZero(); }),
+                      "require a stiffness"));
   EXPECT_TRUE(refuses(made_with([](auto& s) { s.weight_B.z() = HUGE_VAL; }), "weight"));
   EXPECT_TRUE(refuses(made_with([](auto& s) { s.motors.current_max = 0; }), "current_max"));
 }

@@ -21,7 +21,7 @@ driver::SerialArm geometry() {
   return support::vintage_model().geometry;
 }
 
-/// An arm without friction at its tip, whose joints rub.
+/// An arm with friction in its joints and none at its tip.
 SimulatedArmSettings rubbing_arm(const Vector3d& coulomb, const Vector3d& viscous) {
   SimulatedArmSettings settings = free_arm();
   settings.drive_train.coulomb = coulomb;
@@ -33,18 +33,18 @@ LinkedSerialPlant plant_with(const SimulatedArmSettings& settings, const Vector3
   return LinkedSerialPlant::make(support::vintage_model(), settings, p_BT, p_BT).value();
 }
 
-/// Where the tip is, moving as it is told (m/s).
+/// Sets the velocity of the tip (m/s) in its present pose.
 void set_off(LinkedSerialPlant& plant, const Vector3d& v_BT) {
   plant.put({.p_BT = plant.p_BT(), .v_BT = v_BT, .q_rotor = plant.q()});
 }
 
-/// The moment of the tip's momentum about the axis that joint A turns about, kg m^2/s.
+/// Returns the angular momentum of the tip about the axis of joint A, kg m^2/s.
 double moment_about_a(const LinkedSerialPlant& plant, double mass) {
   const Vector3d lever = geometry().jacobian(plant.q()).col(0);
   return mass * lever.dot(plant.v_BT());
 }
 
-TEST(DryFriction, OfTheTipIsWhatNoOtherSolutionIsOf) {
+TEST(DryFriction, TipFrictionIsTheUniqueSolution) {
   support::Random random(9);
   const auto any = [&] {
     return Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
@@ -73,7 +73,7 @@ TEST(DryFriction, OfTheTipIsWhatNoOtherSolutionIsOf) {
   EXPECT_GT(turned, 500);
 }
 
-TEST(DryFriction, OfTipAndJointsIsWhatNoOtherSolutionIsOf) {
+TEST(DryFriction, TipAndJointFrictionIsTheUniqueSolution) {
   support::Random random(10);
   const auto any = [&] {
     return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
@@ -90,7 +90,8 @@ TEST(DryFriction, OfTipAndJointsIsWhatNoOtherSolutionIsOf) {
     const Vector3d momentum = any();
     const Vector3d before = trial % 3 == 0 ? Vector3d(0, 0, 0) : any();
     const Vector3d v = velocity_after_friction(inertia, momentum, friction, before);
-    // Of all velocities it has the least energy beside what friction takes; so a little off costs.
+    // The solution minimises kinetic energy plus the energy lost to friction, so any small
+    // deviation costs energy.
     const auto cost = [&](const Vector3d& at) {
       return 0.5 * at.dot(inertia * at) - momentum.dot(at) + friction.tip * at.lpNorm<1>() +
              friction.joints.dot((friction.G * at).cwiseAbs());
@@ -110,16 +111,16 @@ TEST(DryFriction, OfTipAndJointsIsWhatNoOtherSolutionIsOf) {
   EXPECT_GT(slid, 500);
 }
 
-TEST(DryFriction, OfJointsIsNotForgottenByATipThatKnowsNothingOfIt) {
+TEST(DryFriction, PointTipRefusesJointFriction) {
   EXPECT_FALSE(SerialDriveTrainPlant::make(
       support::vintage_model(), rubbing_arm({0, 0.001, 0}, {0, 0, 0}), home_tip(), home_tip()));
 }
 
-TEST(DryFriction, OfAJointTakesTheMomentAboutItEvenlyUntilItStands) {
+TEST(DryFriction, JointFrictionReducesItsMomentumUniformly) {
   constexpr double kTorque = 0.004;
   const SimulatedArmSettings settings = rubbing_arm({kTorque, 0, 0}, {0, 0, 0});
   LinkedSerialPlant plant = plant_with(settings, home_tip());
-  // Across the plane of the links, and a little outwards, which the joint does not feel.
+  // Across the plane of the links, and a little outwards, which does not turn the joint.
   const Vector3d across = geometry().jacobian(plant.q()).col(0).normalized();
   set_off(plant, 0.1 * across + Vector3d(0, 0, 0.01));
   const double moment = moment_about_a(plant, settings.plant.mass);
@@ -134,10 +135,10 @@ TEST(DryFriction, OfAJointTakesTheMomentAboutItEvenlyUntilItStands) {
                 1e-4 * std::abs(moment) + 1e-4 * kTorque)
         << time;
   }
-  EXPECT_NEAR(plant.v_BT().z(), 0.01, 1e-9) << "no other joint rubs";
+  EXPECT_NEAR(plant.v_BT().z(), 0.01, 1e-9) << "no other joint has friction";
 }
 
-TEST(DryFriction, OfJointsTakesTheEnergyOfTheirWays) {
+TEST(DryFriction, JointFrictionDissipatesTorqueTimesAngle) {
   const Vector3d coulomb(0.01, 0.02, 0.015), viscous(2e-3, 1e-3, 3e-3);
   const SimulatedArmSettings settings = rubbing_arm(coulomb, viscous);
   LinkedSerialPlant plant = plant_with(settings, home_tip());
@@ -155,7 +156,7 @@ TEST(DryFriction, OfJointsTakesTheEnergyOfTheirWays) {
   EXPECT_NEAR(taken, begin - left, 1e-4 * begin);
 }
 
-TEST(DryFriction, OfJointsHoldsExactlyUpToItsTorqueAndNoMore) {
+TEST(DryFriction, JointFrictionHoldsExactlyUpToItsTorque) {
   const Vector3d coulomb(0.002, 0.003, 0.0025);
   for (int joint = 0; joint < 3; ++joint) {
     for (const double share : {0.99, 1.01}) {

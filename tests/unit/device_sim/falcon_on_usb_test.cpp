@@ -58,7 +58,7 @@ class FalconOnUsbTest : public testing::Test {
   driver::falcon::BootSettings quick_{.greetings_max = 5, .settle_ms = 0};
 };
 
-TEST_F(FalconOnUsbTest, SaysNothingUntilItHasFirmware) {
+TEST_F(FalconOnUsbTest, SendsNothingBeforeItHasFirmware) {
   plug({});
   ASSERT_TRUE(driver::falcon::enter_run_mode(*line_).ok());
   EXPECT_FALSE(driver::falcon::firmware_answers(*line_, quick_));
@@ -76,7 +76,7 @@ TEST_F(FalconOnUsbTest, BootsTakesFirmwareAndRunsIt) {
   EXPECT_TRUE(driver::falcon::firmware_answers(*line_, quick_));
 }
 
-TEST_F(FalconOnUsbTest, DoesNotRunFirmwareThatCameWrong) {
+TEST_F(FalconOnUsbTest, DoesNotRunCorruptFirmware) {
   plug(with_image());
   ASSERT_TRUE(driver::falcon::enter_boot_loader(*line_, quick_).ok());
   std::vector<std::byte> wrong(image_.begin(), image_.begin() + 62);
@@ -88,10 +88,10 @@ TEST_F(FalconOnUsbTest, DoesNotRunFirmwareThatCameWrong) {
   EXPECT_FALSE(falcon_->board().running());
 }
 
-TEST_F(FalconOnUsbTest, TakesFirmwareOverABadCableInTheEnd) {
+TEST_F(FalconOnUsbTest, UploadSucceedsOverABadCable) {
   plug(with_image());
-  // One bit in 20,000 flips on the way out: about one in the 16,000 of the first upload, until the
-  // cable is pushed home after 400 frames.
+  // One bit in 20,000 flips in each direction, about one in the 16,000 bits of the first upload,
+  // until the cable is plugged in properly after 400 frames.
   faulty_->order(*parse_fault("bit_errors out rate=0.00005 for=400"));
   faulty_->order(*parse_fault("bit_errors in rate=0.00005 for=400"));
   quick_.block_attempts_max = 20;
@@ -100,7 +100,7 @@ TEST_F(FalconOnUsbTest, TakesFirmwareOverABadCableInTheEnd) {
   EXPECT_TRUE(falcon_->board().running());
 }
 
-TEST_F(FalconOnUsbTest, KnowsWhereItIsOnlyAfterHoming) {
+TEST_F(FalconOnUsbTest, PositionIsKnownOnlyAfterHoming) {
   plug({});
   ASSERT_TRUE(driver::falcon::upload_firmware(*line_, image_, quick_).ok());
   auto state = driver::falcon::home_once(*line_, 0, quick_);
@@ -121,10 +121,10 @@ TEST_F(FalconOnUsbTest, KnowsWhereItIsOnlyAfterHoming) {
   }
 }
 
-TEST_F(FalconOnUsbTest, IsHomedByItsHandWhateverElseTheHandDoes) {
+TEST_F(FalconOnUsbTest, HandHomesTheArmAtAnyTime) {
   const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
   for (const HandMotion motion : {HandMotion::kRest, HandMotion::kTap, HandMotion::kStroke}) {
-    for (const int late_ms : {0, 1300}) {  // the driver may come while the hand is on its way
+    for (const int late_ms : {0, 1300}) {  // the driver may start while the hand is moving
       SCOPED_TRACE(std::to_string(static_cast<int>(motion)) + ", " + std::to_string(late_ms));
       ShelfOptions options;
       options.motion = motion;
@@ -141,7 +141,7 @@ TEST_F(FalconOnUsbTest, IsHomedByItsHandWhateverElseTheHandDoes) {
       }
       ASSERT_TRUE(state.done());
       EXPECT_LT((falcon_->plant().p_BT() - p_BM).norm(), 0.045);
-      // The hand comes back to where it was, and goes its way from there.
+      // The hand returns to its position and continues its path from there.
       host_->frames(600);
       if (motion == HandMotion::kRest) {
         EXPECT_LT((falcon_->plant().p_BT() - p_BM).norm(), 5e-4);
@@ -161,7 +161,7 @@ TEST_F(FalconOnUsbTest, IsHomedByItsHandWhateverElseTheHandDoes) {
   }
 }
 
-TEST_F(FalconOnUsbTest, LosesItsHomeByOnePacketWithoutTheHomingBit) {
+TEST_F(FalconOnUsbTest, OnePacketWithoutTheHomingBitLosesHoming) {
   ShelfOptions options;
   options.motion = HandMotion::kRest;
   plug(options);
@@ -178,10 +178,10 @@ TEST_F(FalconOnUsbTest, LosesItsHomeByOnePacketWithoutTheHomingBit) {
   EXPECT_EQ(falcon_->board().answered().homed, 0);
   state = driver::falcon::home_once(*line_, driver::falcon::kAllHomed, quick_);
   ASSERT_TRUE(state.answered);
-  EXPECT_FALSE(state.done()) << "the bit alone does not bring the home back";
+  EXPECT_FALSE(state.done()) << "the bit does not restore homing";
 }
 
-/// A board that runs some firmware, homed, and what it says to one packet.
+/// A homed board that runs some firmware, and its answer to one packet.
 struct HomedBoard {
   explicit HomedBoard(FalconHoming homing) : board({}, homing) {
     for (const bool dtr : {false, true}) board.wires(dtr, false);
@@ -202,7 +202,7 @@ struct HomedBoard {
   ByteQueue says;
 };
 
-TEST(FalconBoard, MakesOfAPacketWithoutTheHomingBitWhatItsDataSay) {
+TEST(FalconBoard, DecodesAPacketWithoutTheHomingBit) {
   using driver::falcon::kAllHomed;
   using driver::falcon::kHomingMode;
   for (const FalconHoming homing :
@@ -228,7 +228,7 @@ TEST_F(FalconOnUsbTest, LosesItsFirmwareWhenDtrRises) {
   EXPECT_FALSE(falcon_->board().running());
 }
 
-TEST_F(FalconOnUsbTest, HearsNothingAtTheWrongRate) {
+TEST_F(FalconOnUsbTest, ReceivesNothingAtTheWrongBaudRate) {
   plug({});
   ASSERT_TRUE(line_->set_rate_divisor(driver::falcon::kRunDivisor));
   ASSERT_TRUE(line_->write(image_));
@@ -236,7 +236,7 @@ TEST_F(FalconOnUsbTest, HearsNothingAtTheWrongRate) {
   EXPECT_EQ(falcon_->chip().garbled(), image_.size());
 }
 
-TEST_F(FalconOnUsbTest, SendsStatusAloneWhenTheLatencyTimerIsOver) {
+TEST_F(FalconOnUsbTest, LatencyTimerSendsStatusOnly) {
   plug({});
   ASSERT_TRUE(line_->set_latency_ms(16));
   std::vector<std::int64_t> frames;
@@ -268,8 +268,8 @@ TEST_F(FalconOnUsbTest, SwitchesTheMotorsOffWhenTheHostIsSilent) {
   EXPECT_EQ(falcon_->truth().currents.norm(), 0);
 }
 
-TEST(DeltaPlant, ExertsTheForceThatItsTorquesAreWorth) {
-  // Checked against the driver's Jacobian, which was found in another way: f = J^-T tau.
+TEST(DeltaPlant, TorquesExertTheExpectedTipForce) {
+  // Checked against the driver's Jacobian, which is computed differently: f = J^-T tau.
   const auto model = driver::falcon::falcon_model();
   std::mt19937_64 random(support::seed_of(11));
   std::uniform_real_distribution<double> in_ball(-0.03, 0.03), amperes(-2, 2);
@@ -300,7 +300,7 @@ TEST(DeltaPlant, FollowsTheHandAndYieldsToTheMotors) {
                          .value();
   plant.set_currents({0.2, 0.2, 0.2});
   for (int i = 0; i < 2000; ++i) plant.step(model.geometry.p_BM, 1'000'000);
-  // At rest the spring of the hand balances the motors.
+  // At rest, the spring of the hand balances the motors.
   const Eigen::Vector3d away = plant.p_BT() - model.geometry.p_BM;
   EXPECT_GT(away.norm(), 1e-3);
   EXPECT_LT((300 * away - plant.f_T_B()).norm(), 1e-6);

@@ -22,7 +22,7 @@ SerialPose pose_at(const Eigen::Vector3d& q) {
   return {model.geometry, model.geometry.forward(q)};
 }
 
-// The home pose with each joint moved by so many steps of its encoder.
+// Returns the home pose with each joint moved by the given number of encoder steps.
 SerialPose steps_from_home(double a, double b, double c) {
   const auto model = support::vintage_model();
   Eigen::Vector3d q = support::vintage_home();
@@ -45,7 +45,7 @@ TEST(Firmware, CountsFromZeroAtHomeAndRoundsToTheNearestStep) {
   EXPECT_EQ(report.counts, (std::array<std::int16_t, 6>{100, -8, 2000, 0, 0, 0}));
 }
 
-TEST(Firmware, StepsTheTipAsFarAsTheGeometrySays) {
+TEST(Firmware, OneCountMovesTheTipAsGeometryPredicts) {
   // 0.024, 0.028 and 0.023 mm per count at home [DEVICES 2].
   const auto model = support::vintage_model();
   const driver::hfab::HfabArm arm(model);
@@ -70,7 +70,7 @@ TEST(Firmware, StepsTheTipAsFarAsTheGeometrySays) {
   }
 }
 
-TEST(Firmware, SendsFractionsOfCountsBelowTenNanometres) {
+TEST(Firmware, IdealEncodersResolveOneNanometre) {
   const auto model = support::vintage_model();
   const auto arm = driver::make_ideal_arm(arm_model(model));
   FirmwareSettings ideal;
@@ -80,7 +80,7 @@ TEST(Firmware, SendsFractionsOfCountsBelowTenNanometres) {
   for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector3d p_BT = home_tip() + random.in_box(0.05);
     const SerialPose pose(model.geometry, p_BT);
-    if (!pose.within_reach()) continue;  // hardly any, in a corner of the box
+    if (!pose.within_reach()) continue;  // a few, in a corner of the box
     driver::ArmReading reading;
     ASSERT_TRUE(arm->decode(firmware.sample(pose.angles()), reading));
     ASSERT_LT((arm->pose(reading).p_BT - p_BT).norm(), 1e-9) << p_BT.transpose();
@@ -103,7 +103,7 @@ TEST(Firmware, WrapsItsCountersAtSixteenBits) {
             (std::array<std::int16_t, 6>{-32768, 32767, 5, 0, 0, 0}));
 }
 
-TEST(Firmware, SamplesAnglesOnlyFromSureCounts) {
+TEST(Firmware, SamplesAnglesOnlyFromReliableCounts) {
   FirmwareSettings ideal;
   ideal.ideal_encoders = true;
   for (const FirmwareSettings& settings : {FirmwareSettings(), ideal}) {
@@ -112,7 +112,7 @@ TEST(Firmware, SamplesAnglesOnlyFromSureCounts) {
     support::Random random(10);
     int sure = 0, unsure = 0;
     for (int i = 0; i < 20000; ++i) {
-      // Every other one within 0.002 of an edge between two counts of the first joint.
+      // Every second position is within 0.002 of an edge between two counts of the first joint.
       const double near_edge =
           std::floor(random.uniform(-500, 500)) + 0.5 + random.in_box(0.002).x();
       const Eigen::Vector3d steps(i % 2 == 0 ? random.uniform(-500, 500) : near_edge, 300.2, -20.7);
@@ -163,12 +163,12 @@ TEST(Firmware, HomingPresetsCountersWithoutCurrent) {
   EXPECT_EQ(report.info, 0);
   EXPECT_EQ(firmware.currents(), Eigen::Vector3d(0, 0, 0));
   EXPECT_EQ(firmware.counters().presets, 1U);
-  // The discs did not move: the next edge is where it was, 0.2 of a step away.
+  // The encoder discs did not move: the next edge is still 0.2 of a step away.
   EXPECT_EQ(sampled(firmware, steps_from_home(10.45, 20.45, 30.45)).counts[0], 1);
   EXPECT_EQ(sampled(firmware, steps_from_home(10.55, 20.55, 30.55)).counts[0], 2);
 }
 
-TEST(Firmware, SeesAndDrivesWhatIsPluggedIntoIt) {
+TEST(Firmware, WiringSelectsEncodersAndMotors) {
   FirmwareSettings settings;
   settings.wiring.encoder_of = {1, 0, 2};
   settings.wiring.encoder_gain = {1, -1, 0};
@@ -180,8 +180,8 @@ TEST(Firmware, SeesAndDrivesWhatIsPluggedIntoIt) {
   firmware.receive(drive_message(1000, 2000, 3000), 0);
   EXPECT_EQ(firmware.currents(), Eigen::Vector3d(0, 3, -2));
   settings.wiring.motor_of = {0, 3, 1};
-  EXPECT_TRUE(refuses(Firmware::make(arm_model(support::vintage_model()), settings),
-                      "joint that is not there"));
+  EXPECT_TRUE(
+      refuses(Firmware::make(arm_model(support::vintage_model()), settings), "unknown joint"));
 }
 
 TEST(Firmware, TakesACurrentBeyondItsRangeAsZero) {
@@ -208,7 +208,7 @@ TEST(Firmware, IgnoresAndCountsMessagesOfUnknownLength) {
   }
   EXPECT_EQ(firmware.counters().malformed, malformed);
   EXPECT_EQ(firmware.currents().x(), 0.1);
-  // What nobody understood does not keep the motors on either.
+  // A message that is not understood does not keep the motors on either.
   EXPECT_EQ(firmware.watchdog_due_ns(), 100'000'000);
 }
 

@@ -36,7 +36,7 @@ TEST(HandPath, WaitsBeforeItsFirstAndAfterItsLastPoint) {
   EXPECT_EQ(still.at(1), Eigen::Vector3d(1, 2, 3));
 }
 
-TEST(HandPath, AnswersTheSameWhateverWasAskedBefore) {
+TEST(HandPath, PositionIsIndependentOfEarlierQueries) {
   HandPath wandering = zigzag();
   support::Random random(7);
   for (int i = 0; i < 1000; ++i) {
@@ -52,7 +52,7 @@ TEST(HandPath, RefusesPointsOutOfOrderAndNamesThem) {
   EXPECT_TRUE(refuses(HandPath::make({{0.0, {nan, 0, 0}}}), "Point 0"));
   EXPECT_TRUE(refuses(HandPath::make({{nan, {0, 0, 0}}}), "not finite"));
   EXPECT_TRUE(refuses(HandPath::make({{0.0, {0, 0, 0}}, {1.0, {0, 0, 0}}, {1.0, {0, 0, 0}}}),
-                      "Point 2 of the hand's path does not come after the one before it"));
+                      "Point 2 of the hand's path is not later than the point before it"));
 }
 
 }  // namespace

@@ -64,8 +64,8 @@ class HidArmTest : public testing::TestWithParam<const char*> {
   }
   void tell(const std::vector<std::byte>& bytes) { host_->tell(hid_->board().out, bytes); }
   bool answers() const { return hid_->board().speech == HidSpeech::kAnswers; }
-  /// Sends a message and takes a report in the same frame; a board that answers gives that of the
-  /// message before.
+  /// Sends a message and reads a report in the same frame. A board that answers returns the report
+  /// of the previous message.
   std::optional<support::UsbHost::Done> exchange(std::int16_t mA) {
     const std::uint32_t asked = ask();
     tell(message({mA, 0, 0}));
@@ -80,7 +80,7 @@ class HidArmTest : public testing::TestWithParam<const char*> {
   std::optional<support::UsbHost> host_;
 };
 
-TEST_P(HidArmTest, SaysWhereItIsWithinHalfACount) {
+TEST_P(HidArmTest, ReportsItsPositionWithinHalfACount) {
   int moved = 0;
   std::array<std::int32_t, 3> before{};
   for (int i = 0; i < 3000; ++i) {
@@ -90,7 +90,7 @@ TEST_P(HidArmTest, SaysWhereItIsWithinHalfACount) {
     const auto counts = counts_in(done->data);
     const ArmTruth truth = arm_->truth();
     EXPECT_EQ(counts, truth.counts);
-    // Sampled a frame before: a free-running board sends on, the other answered then.
+    // Sampled a frame earlier: a free-running board keeps sending, the other answered at that time.
     if (i > 0) {
       EXPECT_EQ(truth.report_ns, (host_->frame() - 1) * 1'000'000);
     }
@@ -103,7 +103,7 @@ TEST_P(HidArmTest, SaysWhereItIsWithinHalfACount) {
   EXPECT_GT(moved, 1000);
 }
 
-TEST_P(HidArmTest, FeedsItsMotorsWhatTheMessageSays) {
+TEST_P(HidArmTest, MessageSetsTheMotorCurrents) {
   std::mt19937_64 random(support::seed_of(2));
   for (int i = 0; i < 300; ++i) {
     const auto mA = static_cast<std::int16_t>(static_cast<int>(random() % 5000) - 2500);
@@ -140,7 +140,7 @@ TEST_P(HidArmTest, IgnoresMessagesOfAnotherLengthAndCountsThem) {
   EXPECT_EQ(arm_->truth().messages, 1U);
 }
 
-TEST_P(HidArmTest, IsNotKeptOnByMessagesOfAnotherLength) {
+TEST_P(HidArmTest, MessagesOfAnotherLengthDoNotFeedTheWatchdog) {
   exchange(500);
   ASSERT_TRUE(arm_->truth().motors_on);
   for (int i = 0; i < 510; ++i) {
@@ -176,7 +176,7 @@ TEST_P(HidArmTest, ServesOnlyTheHidRequestsOfItsLibrary) {
   EXPECT_EQ(descriptor->data, arm_->description().interfaces[0].report_descriptor);
 }
 
-TEST_P(HidArmTest, SpeaksUnaskedOnlyIfItIsFreeRunning) {
+TEST_P(HidArmTest, SendsUnaskedOnlyIfFreeRunning) {
   int reports = 0;
   for (int i = 0; i < 200; ++i) {
     const std::uint32_t asked = ask();
@@ -184,7 +184,7 @@ TEST_P(HidArmTest, SpeaksUnaskedOnlyIfItIsFreeRunning) {
     reports += host_->done(asked) ? 1 : 0;
     host_->take_back(asked);
   }
-  // The report that a board sends when it starts has waited since then.
+  // The report that the board sent at its start is still waiting.
   EXPECT_EQ(reports, answers() ? 1 : 200);
 }
 
@@ -225,7 +225,7 @@ class BoardThatAnswers : public testing::TestWithParam<std::pair<const char*, Hi
 TEST_P(BoardThatAnswers, SendsOneReportForEachMessage) {
   Board board(GetParam().first, GetParam().second);
   board.arm->advance_to(40'000'000);
-  // That of its start comes first, however late it is taken, and it is as old as that.
+  // The report of its start is read first and shows that time, however late it is read.
   EXPECT_EQ(board.report(), 0);
   EXPECT_FALSE(board.report());
   for (std::int64_t ms = 50; ms < 150; ms += 7) {
@@ -237,7 +237,7 @@ TEST_P(BoardThatAnswers, SendsOneReportForEachMessage) {
   }
 }
 
-TEST_P(BoardThatAnswers, DoesNotListenWhileItsReportWaits) {
+TEST_P(BoardThatAnswers, ReadsNoMessageWhileItsReportWaits) {
   Board board(GetParam().first, GetParam().second);
   board.arm->advance_to(1'000'000);
   EXPECT_EQ(board.tell(700), Answer::kDone);  // waits in the endpoint
@@ -291,7 +291,7 @@ TEST(HidArm, CountsTheReportsOfAWoodenHapticsBoard) {
     const auto report = driver::woody::decode_input(std::span(packet).first(8));
     ASSERT_TRUE(report.has_value());
     EXPECT_EQ(report->counter, i);
-    EXPECT_EQ((*arm)->in(0x81, packet).answer, Answer::kNak);  // one report a frame
+    EXPECT_EQ((*arm)->in(0x81, packet).answer, Answer::kNak);  // one report per frame
   }
 }
 

@@ -28,7 +28,7 @@ SimulatedArmSettings irregular(std::int64_t jitter_ns, double loss) {
   return settings;
 }
 
-/// Takes reports for so many periods; returns how late each came after its least delay, ns.
+/// Reads reports for `periods` periods; returns the delay of each beyond the minimum delay, ns.
 std::vector<std::int64_t> lateness(SimulatedArm& arm, int periods) {
   std::vector<std::int64_t> late;
   while (arm.time_ns() < periods * kMillisecond) {
@@ -38,7 +38,7 @@ std::vector<std::int64_t> lateness(SimulatedArm& arm, int periods) {
   return late;
 }
 
-TEST(IrregularWire, LosesAndDelaysReportsAsOftenAsItIsSaid) {
+TEST(IrregularWire, LossAndJitterMatchTheirSettings) {
   constexpr int kPeriods = 20'000;
   constexpr double kLoss = 0.1, kJitter_ns = 800'000;
   SimulatedArm arm = arm_with(irregular(800'000, kLoss));
@@ -56,7 +56,7 @@ TEST(IrregularWire, LosesAndDelaysReportsAsOftenAsItIsSaid) {
   EXPECT_NEAR(sum / count, kJitter_ns / 2, 5 * kJitter_ns / std::sqrt(12 * count));
 }
 
-TEST(IrregularWire, RepeatsToTheBitByItsSeed) {
+TEST(IrregularWire, SameSeedIsBitIdentical) {
   SimulatedArm first = arm_with(irregular(800'000, 0.1), 7);
   SimulatedArm again = arm_with(irregular(800'000, 0.1), 7);
   SimulatedArm other = arm_with(irregular(800'000, 0.1), 8);
@@ -65,7 +65,7 @@ TEST(IrregularWire, RepeatsToTheBitByItsSeed) {
   EXPECT_NE(late, lateness(other, 500));
 }
 
-TEST(IrregularWire, LetsNothingOvertake) {
+TEST(IrregularWire, PreservesTheOrderOfReports) {
   SimulatedArmSettings settings = free_arm();
   settings.wire.jitter_ns = 5 * kMillisecond;
   SimulatedArm arm = arm_with(settings);
@@ -84,7 +84,7 @@ TEST(IrregularWire, LetsNothingOvertake) {
   EXPECT_EQ(arm.plant().currents().x(), 0.399);
 }
 
-TEST(IrregularWire, LetsTheHostWaitForALateReportUntilItsDeadline) {
+TEST(IrregularWire, HostWaitsForALateReportUntilItsDeadline) {
   SimulatedArmSettings settings = free_arm();
   settings.wire.jitter_ns = 900'000;
   SimulatedArm arm = arm_with(settings);
@@ -99,7 +99,7 @@ TEST(IrregularWire, LetsTheHostWaitForALateReportUntilItsDeadline) {
   }
 }
 
-TEST(IrregularWire, RefusesChancesThatAreNone) {
+TEST(IrregularWire, RefusesInvalidProbabilities) {
   const auto made = [](std::int64_t jitter_ns, double loss) {
     return SimulatedArm::make(support::vintage_model(), irregular(jitter_ns, loss),
                               resting_at(home_tip()));
@@ -109,10 +109,10 @@ TEST(IrregularWire, RefusesChancesThatAreNone) {
   EXPECT_TRUE(refuses(made(0, NAN), "loss"));
 }
 
-/// Leads the arm to and fro and compares its counters with those of one that misses nothing.
+/// Moves the arm to and fro and compares its counters with those of an arm that misses no edge.
 struct Missed {
   std::int64_t passed = 0;      // edges of all encoders
-  std::uint64_t missed = 0;     // as the board counts them
+  std::uint64_t missed = 0;     // counted by the board
   std::int64_t wrong_most = 0;  // counts
   driver::hfab::InputReport last{};
 };
@@ -148,7 +148,7 @@ Missed moved_with(double missed_edges) {
   return found;
 }
 
-TEST(MissedEdges, StayMissedAsOftenAsItIsSaid) {
+TEST(MissedEdges, FrequencyMatchesTheSetting) {
   constexpr double kChance = 0.02;
   const Missed found = moved_with(kChance);
   const auto passed = static_cast<double>(found.passed);
@@ -158,7 +158,7 @@ TEST(MissedEdges, StayMissedAsOftenAsItIsSaid) {
   EXPECT_GT(found.wrong_most, 0.25 * kChance * passed / 6);
 }
 
-TEST(MissedEdges, LeaveACounterStillThatMissesAll) {
+TEST(MissedEdges, CounterThatMissesAllEdgesDoesNotMove) {
   const Missed found = moved_with(1);
   EXPECT_EQ(found.last.counts, driver::hfab::InputReport{}.counts);
   EXPECT_EQ(found.missed, static_cast<std::uint64_t>(found.passed));

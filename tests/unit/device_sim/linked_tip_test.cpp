@@ -19,7 +19,7 @@ using support::desk_links;
 using support::RigidLinks;
 
 constexpr std::int64_t kMillisecond = 1'000'000;
-const Eigen::Vector3d kTilted(1.2, -2.1, -9.4);  // gravity of a base that stands aslant, m/s^2
+const Eigen::Vector3d kTilted(1.2, -2.1, -9.4);  // gravity for a tilted base, m/s^2
 
 driver::SerialArm geometry() {
   return support::vintage_model().geometry;
@@ -41,7 +41,7 @@ SimulatedArmSettings linked_arm(const RigidLinks& links) {
   return settings;
 }
 
-/// The same arm with the tip's mass, which bears no weight, as one body more: what accelerates it.
+/// The same arm with the tip's mass as an additional body without weight, for its acceleration.
 Eigen::Vector3d acceleration(const RigidLinks& links, const SimulatedArmSettings& settings,
                              const Eigen::Vector3d& tau, const Eigen::Vector3d& q,
                              const Eigen::Vector3d& rate) {
@@ -55,7 +55,7 @@ Eigen::Vector3d acceleration(const RigidLinks& links, const SimulatedArmSettings
   return (links.inertia(q) + tip.inertia(q)).inverse() * all;
 }
 
-TEST(LinkMechanics, AreLagrangesOfItsBodiesAtAnyPoseAndRate) {
+TEST(LinkMechanics, MatchLagrangesEquationsOfTheBodies) {
   support::Random random(3);
   const RigidLinks links = desk_links(geometry(), 1, kTilted);
   const LinkMechanics mechanics(geometry(), links.settings());
@@ -76,7 +76,7 @@ TEST(LinkMechanics, AreLagrangesOfItsBodiesAtAnyPoseAndRate) {
   }
 }
 
-TEST(LinkedTip, MovesAsItsBodiesDoByLagrangeAndRungeKutta) {
+TEST(LinkedTip, MotionMatchesLagrangeWithRungeKutta) {
   const RigidLinks links = desk_links(geometry(), 1, kTilted);
   SimulatedArmSettings settings = linked_arm(links);
   settings.hand.stiffness = 50;
@@ -110,7 +110,7 @@ TEST(LinkedTip, MovesAsItsBodiesDoByLagrangeAndRungeKutta) {
   EXPECT_EQ(plant.stops(), 0U);
 }
 
-/// Where the tip is 0.2 s after it was let go, by steps of some length.
+/// Returns the tip position 0.2 s after its release, for steps of the given length.
 Eigen::Vector3d let_go(std::int64_t dt_ns) {
   SimulatedArmSettings settings = linked_arm(desk_links(geometry(), 1, kTilted));
   settings.hand = {.mass = 0, .stiffness = 100, .damping = 0.5};
@@ -131,7 +131,7 @@ TEST(LinkedTip, IsOfSecondOrderInItsStep) {
   EXPECT_NEAR(coarse / half, 4, 0.4);
 }
 
-TEST(LinkedTip, NeitherGainsNorLosesEnergyWithoutFriction) {
+TEST(LinkedTip, ConservesEnergyWithoutFriction) {
   const RigidLinks links = desk_links(geometry(), 1, kTilted);
   SimulatedArmSettings settings = linked_arm(links);
   settings.hand.stiffness = 200;
@@ -155,7 +155,7 @@ TEST(LinkedTip, NeitherGainsNorLosesEnergyWithoutFriction) {
   EXPECT_EQ(plant.stops(), 0U);
 }
 
-TEST(LinkedTip, HasTheMassOfItsLinksInEachPoseAndDirection) {
+TEST(LinkedTip, ApparentMassMatchesTheLinksInEachPose) {
   support::Random random(5);
   const RigidLinks links = desk_links(geometry(), 1, Eigen::Vector3d::Zero());
   const SimulatedArmSettings settings = linked_arm(links);
@@ -176,7 +176,7 @@ TEST(LinkedTip, HasTheMassOfItsLinksInEachPoseAndDirection) {
   EXPECT_GT(most, 1.2 * least);
 }
 
-TEST(LinkedTip, IsAPointWhereLinksWeighNothing) {
+TEST(LinkedTip, EqualsPointTipForMasslessLinks) {
   SimulatedArmSettings settings = phantom_like();
   settings.weight_B = {0, 0, -0.1};
   SerialDriveTrainPlant point =
@@ -195,13 +195,13 @@ TEST(LinkedTip, IsAPointWhereLinksWeighNothing) {
       plant->step(p_BH, kMillisecond);
     }
     held += static_cast<int>((point.v_BT().array() == 0).count());
-    // Friction of 0.04 N that acts for 25 us too long or too short leaves 0.4 um in 40 ms.
+    // Friction of 0.04 N that acts 25 us too long or too short causes an error of 0.4 um in 40 ms.
     ASSERT_LT((point.p_BT() - linked.p_BT()).norm(), 1e-6) << "after " << k << " ms";
   }
   EXPECT_GT(held, 10);
 }
 
-TEST(LinkedTip, StaysExactlyWhereFrictionCarriesItsLinks) {
+TEST(LinkedTip, FrictionHoldsTheLinksExactly) {
   SimulatedArmSettings settings = linked_arm(desk_links(geometry()));
   const Eigen::Vector3d q = support::vintage_home();
   const Eigen::Vector3d pull = geometry().jacobian(q).transpose().inverse() *
@@ -219,7 +219,7 @@ TEST(LinkedTip, StaysExactlyWhereFrictionCarriesItsLinks) {
 }
 
 TEST(LinkedTip, OscillatesAgainstItsMotorOnACable) {
-  // The yaw at home: links of 1e-3 kg m^2 and a tip of 0.1 kg at 138 mm against a motor.
+  // The yaw joint at home: links of 1e-3 kg m^2 and a tip of 0.1 kg at 138 mm, against a motor.
   SimulatedArmSettings settings = free_arm();
   settings.links.inertia = {1e-3, 0, 0};
   settings.drive_train.inertia.setConstant(1e-3);
@@ -236,7 +236,7 @@ TEST(LinkedTip, OscillatesAgainstItsMotorOnACable) {
   }
 }
 
-TEST(LinkedTip, RefusesLinksThatCannotBe) {
+TEST(LinkedTip, RefusesImpossibleLinks) {
   const auto made_with = [](const std::function<void(LinkSettings&)>& change) {
     SimulatedArmSettings settings = linked_arm(desk_links(geometry()));
     change(settings.links);
@@ -247,20 +247,20 @@ TEST(LinkedTip, RefusesLinksThatCannotBe) {
   EXPECT_TRUE(refuses(made_with([](auto& l) { l.moment_b = NAN; }), "finite"));
   EXPECT_TRUE(refuses(made_with([](auto& l) { l.inertia[1] = -1e-4; }), "must not be negative"));
   EXPECT_TRUE(refuses(made_with([](auto& l) { l.coupling = 1; }), "square of coupling"));
-  EXPECT_TRUE(refuses(made_with([](auto& l) { l.yaw_b = -0.01; }), "below zero in some pose"));
+  EXPECT_TRUE(refuses(made_with([](auto& l) { l.yaw_b = -0.01; }), "negative in some pose"));
   EXPECT_TRUE(refuses(made_with([](auto& l) {
                         l.inertia = {0, 1e-3, 1e-3};
                         l.yaw_b = l.yaw_c = 5e-4, l.coupling = -8e-4;
                       }),
-                      "below zero in some pose"));
-  // Below zero on an edge alone: neither upright nor level.
+                      "negative in some pose"));
+  // Negative only on an edge: neither upright nor level.
   for (const bool b : {true, false}) {
     EXPECT_TRUE(refuses(made_with([b](auto& l) {
                           l.inertia = {0, 1e-2, 1e-2};
                           l.yaw_b = b ? 1e-4 : 1e-3, l.yaw_c = b ? 1e-3 : 1e-4;
                           l.coupling = 3.5e-4;
                         }),
-                        "below zero in some pose"));
+                        "negative in some pose"));
   }
 }
 

@@ -1,5 +1,5 @@
-// Motors and encoders watched by the motion of the tip (driver/motion_watch.h): what is found, how
-// early, and that no hand on a sound arm is taken for a fault.
+// Detection of motor and encoder faults from the motion of the tip (driver/motion_watch.h): which
+// faults are found, how early, and that a hand on a sound arm causes no fault.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ std::string name_of(MotionArm arm) {
   return std::string(kMotionArmNames[static_cast<std::size_t>(arm)]);
 }
 
-/// The shipped hand, which strokes into the wall at this speed, again and again, from 0.5 s on.
+/// The default hand, which strokes into the wall at this speed repeatedly, from 0.5 s on.
 MotionRun strokes(MotionArm arm, double speed, std::uint64_t seed = 3) {
   MotionRun run;
   run.arm = arm;
@@ -53,27 +53,29 @@ TEST(ReversedMotors, AreFoundWithin16mmAtUpTo300mmPerSecond) {
       std::printf("%-16s %.2f m/s: %s at %.1f mm, %.2f m/s\n", name_of(arm).c_str(), speed,
                   std::string(name(reversed.fault)).c_str(), 1e3 * reversed.depth, reversed.speed);
       EXPECT_EQ(reversed.fault, Fault::kMotorsReversed) << name_of(arm) << ' ' << speed;
-      EXPECT_LT(reversed.depth, 0.016) << "it went 40 mm deep";
-      EXPECT_LT(reversed.speed, speed + 0.55) << "it went at 1.15 m/s";
+      EXPECT_LT(reversed.depth, 0.016) << "without the watch it was 40 mm deep";
+      EXPECT_LT(reversed.speed, speed + 0.55) << "without the watch it reached 1.15 m/s";
     }
   }
 }
 
-TEST(ReversedMotors, AreNotSeenInStrokesOfASoundArm) {
+TEST(ReversedMotors, AreNotReportedInStrokesOfASoundArm) {
   for (const MotionArm arm : kMotionArms) {
     for (const double speed : {0.05, 0.1, 0.2, 0.3, 0.6}) {
       MotionRun sound = strokes(arm, speed);
       sound.run(4);
       EXPECT_EQ(sound.fault, Fault::kNone) << name_of(arm) << ' ' << speed;
-      EXPECT_GT(sound.force_most, 2) << "it was a touch";
+      EXPECT_GT(sound.force_most, 2) << "there was contact";
     }
   }
 }
 
 TEST(ReversedMotors, OneReversedJointIsFoundInManyStrokes) {
-  // At home of the PHANTOM link B alone moves the tip up and down; of the others, C more than B.
+  // At the home pose of the PHANTOM only link B moves the tip up and down; on the other arms C
+  // moves it more than B.
   constexpr std::array<int, 3> kJoints{1, 2, 2};
-  // Of 200 strokings of 3.5 s: 197, 104, 170. Where another joint holds the tip, nothing tells.
+  // Found in 197, 104 and 170 of 200 strokings of 3.5 s. If another joint holds the tip, the fault
+  // is not visible.
   constexpr std::array<int, 3> kFoundLeast{185, 90, 155};
   for (const MotionArm arm : kMotionArms) {
     const auto at = static_cast<std::size_t>(arm);
@@ -97,20 +99,20 @@ TEST(ReversedMotors, OneReversedJointIsFoundInManyStrokes) {
   }
 }
 
-TEST(MotionWatch, TakesNoHandOnASoundArmForAFault) {
+TEST(MotionWatch, HandOnASoundArmIsNoFault) {
   int touches = 0;
   for (std::uint64_t seed = 0; seed < 600; ++seed) {
     MotionRun run = support::any_hand(seed, 2);
     run.run(2);
     touches += run.force_most > 1.5 ? 1 : 0;
-    // A hand that throws the tip may be too fast for the gate, and nothing else.
+    // A hand that throws the tip may exceed the speed limit of the gate, but causes no other fault.
     if (run.fault == Fault::kOverSpeed) continue;
     EXPECT_EQ(run.fault, Fault::kNone) << "seed " << seed << ": " << name(run.fault);
   }
   EXPECT_GT(touches, 400);
 }
 
-/// A hand on the wall that presses more and less and strokes to and fro.
+/// A hand on the wall that presses with varying force and strokes to and fro.
 MotionRun rubbing(MotionArm arm) {
   MotionRun run;
   run.arm = arm;
@@ -124,7 +126,7 @@ MotionRun rubbing(MotionArm arm) {
   return run;
 }
 
-/// Lets an encoder stand still from a read on.
+/// Freezes an encoder from a given read on.
 void freeze(MotionRun& run, std::size_t joint, int from) {
   auto last = std::make_shared<std::int16_t>();
   run.tamper = [=](int read, std::array<std::int16_t, 6>& counts) {
@@ -133,14 +135,14 @@ void freeze(MotionRun& run, std::size_t joint, int from) {
   };
 }
 
-TEST(FrozenEncoder, IsFoundWhereTheForceOnItsJointChanges) {
-  constexpr std::array<std::size_t, 3> kJoints{1, 2, 2};  // that carry the wall's force
+TEST(FrozenEncoder, IsFoundIfTheForceOnItsJointChanges) {
+  constexpr std::array<std::size_t, 3> kJoints{1, 2, 2};  // joints that carry the wall's force
   for (const MotionArm arm : kMotionArms) {
     const std::size_t joint = kJoints[static_cast<std::size_t>(arm)];
     constexpr int kFrom = 1200;
     MotionRun run = rubbing(arm);
     freeze(run, joint, kFrom);
-    // At home the PHANTOM's link B alone tells the depth, so that the force stays as it was.
+    // At home only the PHANTOM's link B determines the depth, so the force does not change.
     const bool steady = arm == MotionArm::kVintage;
     run.hold_most = steady ? 1.5 : 10;
     run.run(4);
@@ -154,7 +156,7 @@ TEST(FrozenEncoder, IsFoundWhereTheForceOnItsJointChanges) {
   }
 }
 
-/// The tip goes round the PHANTOM's own axis at one height, pressing: two joints hardly count.
+/// The tip circles the PHANTOM's yaw axis at one height while it presses: two joints hardly count.
 MotionRun yaw_strokes() {
   MotionRun run;
   run.hand.tremor_amplitude = 0;
@@ -169,7 +171,7 @@ MotionRun yaw_strokes() {
   return run;
 }
 
-TEST(FrozenEncoder, IsNotSeenInAPureYawStroke) {
+TEST(FrozenEncoder, IsNotReportedInAPureYawStroke) {
   MotionRun run = yaw_strokes();
   run.run(4);
   EXPECT_EQ(run.fault, Fault::kNone);
@@ -189,15 +191,16 @@ TEST(FrozenEncoder, HoldsASteadyForceForABoundedTime) {
   EXPECT_EQ(patient.fault, Fault::kNone);
 }
 
-/// Number of strokes that began before the run ended.
+/// Returns the number of strokes that began before the end of the run.
 int strokes_of(const support::StrokeRun& run) {
   int strokes = -1;
   for (const auto& point : run.way) strokes += point.first > 0 && point.first < run.end ? 1 : 0;
   return strokes;
 }
 
-TEST(FrozenEncoder, IsNotSeenInRandomStrokesOfSoundArms) {
-  // Long form: 160,000 strokes. Short form: those of its runs that a rule with less evidence fails.
+TEST(FrozenEncoder, IsNotReportedInRandomStrokesOfSoundArms) {
+  // Long form: 160,000 strokes. Short form: the runs of it in which a rule with less evidence
+  // fails.
   std::vector<std::uint64_t> seeds{30,   40,   93,   225,  259,  343,  373,  377,
                                    387,  461,  505,  680,  804,  833,  1096, 1107,
                                    1141, 1165, 1225, 1315, 1384, 1412, 1430};
@@ -222,8 +225,9 @@ TEST(FrozenEncoder, IsNotSeenInRandomStrokesOfSoundArms) {
 }
 
 TEST(FrozenEncoder, OfALinkIsFoundInRandomStrokes) {
-  // Of 150 runs per arm and joint, 50 in the short form: B and C of WoodenHaptics and Polhem in
-  // all, B of the PHANTOM in 91 %. Its C, and A of all, carry little of the force of a flat wall.
+  // Of 150 runs per arm and joint (short form: 50), the fault is found in all runs for B and C of
+  // WoodenHaptics and Polhem, and in 91 % for B of the PHANTOM. Its C, and A of all arms, carry
+  // little of the force of a flat wall.
   const std::uint64_t runs = support::long_form() ? 150 : 50;
   for (const MotionArm kind : kMotionArms) {
     for (const int joint : {1, 2}) {
@@ -248,7 +252,7 @@ TEST(FrozenEncoder, OfALinkIsFoundInRandomStrokes) {
   }
 }
 
-TEST(UnchangedCounts, EndAForceThatIsHeldForTooLong) {
+TEST(UnchangedCounts, EndALongHeldForce) {
   MotionRun run;
   run.hand.tremor_amplitude = 0;
   run.hold_most = 2;
@@ -258,13 +262,13 @@ TEST(UnchangedCounts, EndAForceThatIsHeldForTooLong) {
   EXPECT_EQ(run.fault, Fault::kCountsUnchanged);
   EXPECT_GT(run.force_most, 1.5);
   EXPECT_GT(run.ticks, 2700u);
-  EXPECT_LT(run.ticks, 3100u) << "it comes to rest within 0.3 s, and 2 s later the force is off";
+  EXPECT_LT(run.ticks, 3100u) << "it comes to rest within 0.3 s, and the force is off 2 s later";
   short_of_it.hold_most = 10;
   short_of_it.run(5);
   EXPECT_EQ(short_of_it.fault, Fault::kNone);
 }
 
-TEST(UnchangedCounts, AreFoundAtOnceWhereAMovingTipSeemsToStopDead) {
+TEST(UnchangedCounts, AreFoundAtOnceAfterAnAbruptStop) {
   MotionRun run = rubbing(MotionArm::kVintage);
   constexpr int kFrom = 1380;
   std::array<std::int16_t, 6> last{};

@@ -27,7 +27,7 @@ MotorHeatSettings some_motors() {
           .torque = kFerrite};
 }
 
-/// Lets a current flow for so long (s), in steps of a tick.
+/// Applies a current for the given time (s), in steps of a tick.
 void hold(MotorHeat& heat, const Eigen::Vector3d& amperes, double seconds) {
   const auto ticks = static_cast<int>(std::lround(seconds / 1e-3));
   for (int i = 0; i < ticks; ++i) heat.pass(amperes, 1e-3);
@@ -47,7 +47,7 @@ double risen(double from, double u, double tau, double a, double t) {
   return end + (from - end) * std::exp(-rate * t);
 }
 
-TEST(MotorHeat, FollowsItsClosedFormWhereTheCurrentIsHeld) {
+TEST(MotorHeat, MatchesItsClosedFormAtConstantCurrent) {
   for (const double a : {0.0, kCopper}) {
     MotorHeatSettings settings = some_motors();
     settings.resistance = a;
@@ -66,10 +66,10 @@ TEST(MotorHeat, FollowsItsClosedFormWhereTheCurrentIsHeld) {
   }
 }
 
-TEST(MotorHeat, RunsAwayAboveTheCurrentThatItsCopperBears) {
+TEST(MotorHeat, RunsAwayAboveTheCriticalCurrent) {
   MotorHeat heat = MotorHeat::make(some_motors()).value();
   const double share = 80 / (1 + kCopper * 80);
-  // Below the current from which on there is no end, and above it.
+  // Below and above the critical current, beyond which the temperature has no equilibrium.
   const double most = some_motors().continuous_current.x() / std::sqrt(kCopper * share);
   hold(heat,
        {0.8 * most, 0,
@@ -99,7 +99,7 @@ TEST(MotorHeat, NeverExceedsTheModelOfTheDriver) {
       std::array<std::int16_t, 3> mA{};
       Eigen::Vector3d amperes;
       for (std::size_t i = 0; i < 3; ++i) {
-        // As the driver does: never more than the guard allows.
+        // As in the driver: never more than the guard allows.
         const double most = guard.drives()[i].current_max;
         mA[i] = static_cast<std::int16_t>(1000 * std::min(most, random.uniform(0, 2)));
         amperes[static_cast<Eigen::Index>(i)] = 1e-3 * mA[i];
@@ -112,7 +112,7 @@ TEST(MotorHeat, NeverExceedsTheModelOfTheDriver) {
       for (std::size_t i = 0; i < 3; ++i) {
         const double share = heat.rise()[static_cast<Eigen::Index>(i)] / 80;
         hottest = std::max(hottest, share);
-        // The same copper heats less as long as it is cooler than at its limit.
+        // The same copper heats less while it is cooler than at its limit.
         if (a == 0) {
           ASSERT_NEAR(share, guard.heat()[i], 1e-9);
         }
@@ -123,7 +123,7 @@ TEST(MotorHeat, NeverExceedsTheModelOfTheDriver) {
   }
 }
 
-TEST(MotorHeat, WeakensTheMotorsOfAnArmAndNothingElse) {
+TEST(MotorHeat, ReducesTheMotorTorqueOnly) {
   const auto pushed = [](const MotorHeatSettings& heat) {
     SimulatedArmSettings settings = free_arm();
     settings.drive_train.current_lag = 1e-3;
@@ -140,12 +140,12 @@ TEST(MotorHeat, WeakensTheMotorsOfAnArmAndNothingElse) {
   warm.at_start.setConstant(50);
   warm.time_constant.setConstant(1e5);
   EXPECT_NEAR(pushed(warm).norm() / cold.norm(), 1 - 50 * 0.0019, 1e-4);
-  // To the bit, where the magnets stay as they are.
+  // Bit-identical, because the magnets do not weaken.
   warm.torque = 0;
   EXPECT_EQ(pushed(warm), cold);
 }
 
-TEST(MotorHeat, ComesFromTheCurrentsThatFlow) {
+TEST(MotorHeat, DependsOnTheActualCurrents) {
   SimulatedArmSettings settings = free_arm();
   settings.hand = {.mass = 0, .stiffness = 500, .damping = 20};
   settings.motors.current_max = 1;
@@ -154,14 +154,14 @@ TEST(MotorHeat, ComesFromTheCurrentsThatFlow) {
   auto plant =
       SerialDriveTrainPlant::make(support::vintage_model(), settings, home_tip(), home_tip())
           .value();
-  plant.set_currents({2, 0, 0});  // of which 1 A flows
+  plant.set_currents({2, 0, 0});  // 1 A of it flows
   for (int i = 0; i < 1000; ++i) plant.step(home_tip(), 1'000'000);
-  // The last millisecond may still be to come.
+  // The last millisecond may not have been counted yet.
   EXPECT_NEAR(plant.winding_rise().x(), risen(0, 1 / 0.81, 60, 0, 0.9995), 1e-3);
   EXPECT_EQ(plant.winding_rise().y(), 0);
 }
 
-TEST(MotorHeat, RefusesWhatCannotBe) {
+TEST(MotorHeat, RefusesImpossibleSettings) {
   const auto made_with = [](const std::function<void(MotorHeatSettings&)>& change) {
     MotorHeatSettings settings = some_motors();
     change(settings);

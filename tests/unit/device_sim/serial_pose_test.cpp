@@ -12,7 +12,7 @@
 namespace thimble::device_sim {
 namespace {
 
-TEST(SerialPose, AgreesWithTheDriversGeometryAllOverTheWorkspace) {
+TEST(SerialPose, MatchesTheDriverOverTheWholeWorkspace) {
   const driver::SerialArm arm{.height = 0.05, .length_b = 0.138, .length_c = 0.112};
   support::Random random(8);
   int reached = 0;

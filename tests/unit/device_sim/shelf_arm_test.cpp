@@ -1,4 +1,4 @@
-// A plugged arm of other constants than the shelf's, and what the hand on it is told.
+// A plugged arm with constants other than the default ones, and commands to the hand on it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 using driver::arm_model;
 using support::refuses;
 
-/// An arm without friction, whose motors are so many times as strong as its driver believes.
+/// An arm without friction, whose motors are `gain` times as strong as its driver assumes.
 ShelfArm shelf_arm(driver::ArmModel model, double gain) {
   for (driver::MotorDrive& drive : model.drives) drive.torque_constant *= gain;
   SimulatedArmSettings settings;
@@ -35,7 +35,7 @@ std::unique_ptr<UsbArm> plugged(const char* name, ShelfArm arm, HandMotion motio
   return std::move(made).value();
 }
 
-/// Returns how far 0.1 A in the first motor drive a free tip in 50 ms, m.
+/// Returns the distance (m) by which 0.1 A in the first motor move a free tip in 50 ms.
 double driven(UsbArm& arm) {
   const auto& hid = dynamic_cast<const HidArm&>(arm);
   std::vector<std::byte> message(hid.report_size());
@@ -50,7 +50,7 @@ double driven(UsbArm& arm) {
   return (arm.truth().p_BT - begin).norm();
 }
 
-TEST(ShelfArm, PullsAsItsOwnConstantsSay) {
+TEST(ShelfArm, UsesTheConstantsOfItsFile) {
   const std::vector<std::pair<const char*, driver::ArmModel>> boards{
       {"woodenhaptics", arm_model(driver::hfab::woody_model())},
       {"polhem", arm_model(driver::hfab::polhem_model())},
@@ -60,21 +60,21 @@ TEST(ShelfArm, PullsAsItsOwnConstantsSay) {
     const double half = driven(*plugged(name, shelf_arm(model, 0.5), HandMotion::kNone));
     EXPECT_GT(whole, 0.001) << name;
     EXPECT_NEAR(half / whole, 0.5, 0.01) << name;
-    // A hand holds it back.
+    // A hand resists it.
     EXPECT_LT(driven(*plugged(name, shelf_arm(model, 1), HandMotion::kRest)), 0.9 * whole) << name;
   }
 }
 
-TEST(ShelfArm, IsRefusedOnABoardThatDrivesAnotherBuild) {
+TEST(ShelfArm, IsRefusedOnABoardOfAnotherGeometry) {
   const auto of = [](const char* name, const driver::ArmModel& model) {
     return make_usb_arm(name, {.serial = {}, .firmware = {}, .arm = shelf_arm(model, 1)});
   };
   const auto woody = arm_model(driver::hfab::woody_model());
-  EXPECT_TRUE(refuses(of("polhem", woody), "another build"));
-  EXPECT_TRUE(refuses(of("polhem-64", woody), "another build"));
-  EXPECT_TRUE(refuses(of("falcon", woody), "another build"));
-  EXPECT_TRUE(
-      refuses(of("woodenhaptics", arm_model(driver::falcon::falcon_model())), "another build"));
+  EXPECT_TRUE(refuses(of("polhem", woody), "does not match the geometry"));
+  EXPECT_TRUE(refuses(of("polhem-64", woody), "does not match the geometry"));
+  EXPECT_TRUE(refuses(of("falcon", woody), "does not match the geometry"));
+  EXPECT_TRUE(refuses(of("woodenhaptics", arm_model(driver::falcon::falcon_model())),
+                      "does not match the geometry"));
 }
 
 TEST(ShelfArm, FollowsAHandThatIsLedUntilItLetsGo) {
@@ -89,7 +89,7 @@ TEST(ShelfArm, FollowsAHandThatIsLedUntilItLetsGo) {
     arm->hold_tip(false);
     arm->lead_hand(begin);
     arm->advance_to(2'000'000'000);
-    EXPECT_LT((arm->truth().p_BT - begin - away).norm(), 0.002) << name << ": nobody holds it";
+    EXPECT_LT((arm->truth().p_BT - begin - away).norm(), 0.002) << name << ": no hand holds it";
     arm->hold_tip(true);
     arm->advance_to(3'000'000'000);
     EXPECT_LT((arm->truth().p_BT - begin).norm(), 0.001) << name;
@@ -104,7 +104,8 @@ TEST(ShelfArm, CarriesAMassThatIsFixedToItsTip) {
       {"polhem", arm_model(driver::hfab::polhem_model())},
       {"falcon", arm_model(driver::falcon::falcon_model())}};
   for (const auto& [name, model] : boards) {
-    for (const double weight : {0.0, 0.3}) {  // of the arm itself: of a plant of another build
+    for (const double weight :
+         {0.0, 0.3}) {  // of the arm itself, which selects another type of plant
       ShelfArm own = shelf_arm(model, 1);
       own.settings.weight_B = Eigen::Vector3d(0, 0, weight);
       const auto arm = plugged(name, own, HandMotion::kNone);
@@ -116,15 +117,15 @@ TEST(ShelfArm, CarriesAMassThatIsFixedToItsTip) {
       ASSERT_TRUE(arm->fix_mass(0.05, gravity_B)) << name;
       const Eigen::Vector3d a = (own.settings.weight_B + 0.05 * gravity_B) / 0.25;
       EXPECT_LT((fallen(50'000'000) - 0.5 * 0.0025 * a).norm(), 1e-5) << name << weight;
-      // Taken off again, it goes on as it moved then.
+      // After the mass is removed, the arm continues with its velocity.
       ASSERT_TRUE(arm->fix_mass(0, gravity_B)) << name;
       const Eigen::Vector3d b = own.settings.weight_B / 0.2;
       EXPECT_LT((fallen(50'000'000) - 0.0025 * a - 0.5 * 0.0025 * b).norm(), 1e-5) << name;
-      EXPECT_TRUE(refuses(arm->fix_mass(-0.01, gravity_B), "0 kg at least"));
-      EXPECT_TRUE(refuses(arm->fix_mass(NAN, gravity_B), "0 kg at least"));
+      EXPECT_TRUE(refuses(arm->fix_mass(-0.01, gravity_B), "at least 0 kg"));
+      EXPECT_TRUE(refuses(arm->fix_mass(NAN, gravity_B), "at least 0 kg"));
     }
   }
-  // A hand that takes the tip holds the mass as well: by its spring of 300 N/m.
+  // A hand that holds the tip also carries the mass, by its spring of 300 N/m.
   const auto held = plugged("woodenhaptics", shelf_arm(woody, 1), HandMotion::kRest);
   const Eigen::Vector3d begin = held->truth().p_BT;
   ASSERT_TRUE(held->fix_mass(0.05, gravity_B));

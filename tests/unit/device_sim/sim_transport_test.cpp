@@ -23,14 +23,14 @@ class SimTransportTest : public ::testing::Test {
   std::array<std::byte, driver::kReportCapacity> buffer_{};
 };
 
-TEST_F(SimTransportTest, ReadsWithoutWaitingWhatIsThere) {
+TEST_F(SimTransportTest, ReadsAvailableReportsWithoutWaiting) {
   const auto read = transport_.read_latest(buffer_, 10 * kOneMillisecond);
   EXPECT_EQ(read.status, TransportStatus::kOk);
   EXPECT_EQ(read.size, driver::hfab::kReportSize);
   EXPECT_EQ(clock_.now_ns(), 0);
 }
 
-TEST_F(SimTransportTest, WaitsForTheNextReportAndNoLonger) {
+TEST_F(SimTransportTest, WaitsOnlyUntilTheNextReport) {
   transport_.read_latest(buffer_, 0);
   const auto read = transport_.read_latest(buffer_, 10 * kOneMillisecond);
   EXPECT_EQ(read.status, TransportStatus::kOk);
@@ -62,7 +62,7 @@ TEST_F(SimTransportTest, WritesAtTheClocksTime) {
   EXPECT_EQ(arm_.firmware().watchdog_due_ns(), 100'007'777);
 }
 
-TEST_F(SimTransportTest, LeavesTheFirmwareOnItsOwnWhenUnplugged) {
+TEST_F(SimTransportTest, FirmwareContinuesWhenUnplugged) {
   transport_.write(drive_message(100, 0, 0));
   transport_.unplug();
   EXPECT_EQ(transport_.read_latest(buffer_, 5 * kOneMillisecond).status, TransportStatus::kLost);

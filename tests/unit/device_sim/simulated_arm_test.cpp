@@ -71,7 +71,7 @@ TEST(SimulatedArm, DeliversAReportExactlyAfterItsDelay) {
   EXPECT_EQ(arm.next_report_ns(), 3'345'678);
 }
 
-TEST(SimulatedArm, ShowsInAReportWhatWasTrueWhenItWasSampled) {
+TEST(SimulatedArm, ReportHoldsTheStateOfItsSampleTime) {
   SimulatedArmSettings settings = free_arm();
   settings.wire.delay_in_ns = 5 * kMillisecond / 2;
   SimulatedArm late = free_at_home(settings);
@@ -90,7 +90,7 @@ TEST(SimulatedArm, ShowsInAReportWhatWasTrueWhenItWasSampled) {
   EXPECT_GT((prompt.plant().p_BT() - home_tip()).norm(), 1e-3);
 }
 
-TEST(SimulatedArm, FeelsAMessageExactlyAfterItsDelay) {
+TEST(SimulatedArm, MessageActsExactlyAfterItsDelay) {
   SimulatedArmSettings settings = free_arm();
   settings.wire.delay_out_ns = 1'234'567;
   SimulatedArm arm = free_at_home(settings);
@@ -119,7 +119,7 @@ TEST(SimulatedArm, KeepsMessagesInOrderOnTheWire) {
   }
 }
 
-TEST(SimulatedArm, SwitchesItsMotorsOffToTheNanosecond) {
+TEST(SimulatedArm, WatchdogActsAtTheExactNanosecond) {
   SimulatedArm arm = free_at_home(phantom_like());
   arm.advance_to(123'456);
   arm.put_message(drive_message(300, 0, 0));
@@ -128,7 +128,7 @@ TEST(SimulatedArm, SwitchesItsMotorsOffToTheNanosecond) {
   arm.advance_to(100'123'456);
   EXPECT_EQ(arm.plant().currents().x(), 0);
   EXPECT_EQ(arm.firmware().counters().watchdog_fired, 1U);
-  // The next message brings them back.
+  // The next message switches them on again.
   arm.put_message(drive_message(200, 0, 0));
   EXPECT_EQ(arm.plant().currents().x(), 0.2);
 }
@@ -160,7 +160,7 @@ TEST(SimulatedArm, SamplesBeforeAMessageOfTheSameMoment) {
 }
 
 TEST(SimulatedArm, IsAnIdealZeroOrderHoldWithoutDelay) {
-  // The wall by hand: the same plant, fed by the host's law with no wire in between.
+  // The reference: the same plant, driven directly by the host's law without a wire.
   auto model = support::vintage_model();
   SimulatedArmSettings settings = phantom_like();
   SimulatedArm arm = SimulatedArm::make(model, settings, resting_at(home_tip())).value();
@@ -198,11 +198,11 @@ TEST(SimulatedArm, FollowsTheHandAlongItsPath) {
   EXPECT_LT((arm.p_BH() - 0.5 * (home_tip() + there)).norm(), 1e-12);
   arm.advance_to(2000 * kMillisecond);
   EXPECT_EQ(arm.p_BH(), there);
-  // Dry friction lets each axis rest at most c/k away.
+  // With dry friction, each axis rests at most c/k away.
   EXPECT_LE((arm.plant().p_BT() - there).cwiseAbs().maxCoeff(), 0.04 / 300 + 1e-9);
 }
 
-TEST(SimulatedArm, DoesNotDependOnHowTimeIsCutIntoPieces) {
+TEST(SimulatedArm, IsIndependentOfTheStepsOfAdvance) {
   const HandPath path =
       HandPath::make({{0.0, home_tip()}, {1.0, home_tip() + Eigen::Vector3d(0.03, 0.02, 0)}})
           .value();
@@ -226,7 +226,7 @@ TEST(SimulatedArm, DoesNothingForATimeInThePast) {
   EXPECT_EQ(arm.time_ns(), 5 * kMillisecond);
 }
 
-// All that happened to an arm in a busy second, as bytes.
+// Returns the values of an arm during a second with many events, to compare runs.
 std::vector<double> trace(std::uint64_t seed, double tremor) {
   SimulatedArmSettings settings = phantom_like();
   settings.hand.tremor_amplitude = tremor;
@@ -253,7 +253,7 @@ std::vector<double> trace(std::uint64_t seed, double tremor) {
   return values;
 }
 
-TEST(SimulatedArm, RepeatsToTheBit) {
+TEST(SimulatedArm, RepeatedRunIsBitIdentical) {
   EXPECT_EQ(trace(1, 300e-6), trace(1, 300e-6));
   EXPECT_NE(trace(1, 300e-6), trace(2, 300e-6));
   EXPECT_EQ(trace(1, 0), trace(2, 0));
@@ -271,7 +271,7 @@ TEST(SimulatedArm, ShowsItsButtonUntilAPreset) {
   EXPECT_EQ(take(arm)->info, 0);
 }
 
-TEST(SimulatedArm, DropsTheOldestWhenTooMuchIsOnTheWire) {
+TEST(SimulatedArm, FullWireDropsTheOldestMessage) {
   SimulatedArmSettings settings = phantom_like();
   settings.wire.delay_out_ns = kMillisecond;
   SimulatedArm arm = free_at_home(settings);
@@ -295,7 +295,7 @@ TEST(SimulatedArm, IgnoresMessagesThatAreTooLong) {
   }
 }
 
-TEST(SimulatedArm, RefusesWhatItsPartsRefuse) {
+TEST(SimulatedArm, RefusesInvalidSettingsOfItsParts) {
   const auto made = [](const SimulatedArmSettings& settings) {
     return SimulatedArm::make(support::vintage_model(), settings, resting_at(home_tip()));
   };

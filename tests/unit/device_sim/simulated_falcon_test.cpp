@@ -17,7 +17,8 @@ namespace {
 
 using support::refuses;
 
-/// A driver of a Falcon inside the program, whose hand goes 10 mm to the side in a second.
+/// A driver with a simulated Falcon in the same program, whose hand moves 10 mm to the side in a
+/// second.
 struct InProgram {
   explicit InProgram(std::vector<std::byte> firmware = {}) {
     SimulatedArmSettings settings;
@@ -54,27 +55,27 @@ struct InProgram {
   const Eigen::Vector3d p_MH{0.01, 0, 0};
   std::unique_ptr<SimulatedFalcon> falcon;
   driver::VirtualClock clock;
-  std::unique_ptr<driver::Device> device;  // holds the wire to it, so it goes first
+  std::unique_ptr<driver::Device> device;  // holds the wire to it, so it is destroyed first
 };
 
-TEST(SimulatedFalcon, IsHomedBeforeItsHandBeginsAndSaysWhereItIs) {
+TEST(SimulatedFalcon, IsHomedBeforeItsHandBegins) {
   InProgram run(std::vector<std::byte>(1500, std::byte{7}));
   EXPECT_TRUE(run.falcon->arm().board().running());
   EXPECT_EQ(run.falcon->arm().board().uploaded(), 1500u);
   const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
-  EXPECT_LT((run.device->state().p_WT - p_BM).norm(), 5e-4);  // but for dry friction
+  EXPECT_LT((run.device->state().p_WT - p_BM).norm(), 5e-4);  // dry friction remains
   int fresh = 0;
   for (int k = 0; k < 1200; ++k) {
     run.tick({0, 0, 0});
     fresh += run.device->state().fresh ? 1 : 0;
-    // A tick old, at a centimetre a second, and a count or two.
+    // The position is a tick old, at a speed of 1 cm/s, and off by a count or two.
     ASSERT_LT((run.device->state().p_WT - run.falcon->arm().truth().p_BT).norm(), 1.5e-4) << k;
   }
   EXPECT_GE(fresh, 1198);
   EXPECT_LT((run.device->state().p_WT - p_BM - run.p_MH).norm(), 5e-4);
 }
 
-TEST(SimulatedFalcon, HearsTheHomingBitInEveryMessageOfTheDriver) {
+TEST(SimulatedFalcon, EveryDriverMessageHasTheHomingBit) {
   InProgram run;
   ASSERT_TRUE(run.device->activate());
   const FalconBoard& board = run.falcon->arm().board();
@@ -101,7 +102,7 @@ TEST(SimulatedFalcon, HearsTheHomingBitInEveryMessageOfTheDriver) {
   }
 }
 
-/// A Falcon whose answers say at some time that a leg is not homed.
+/// A Falcon whose answers report, from some time on, that a leg is not homed.
 class LegLost final : public driver::Transport {
  public:
   explicit LegLost(std::unique_ptr<driver::Transport> wire) : wire_(std::move(wire)) {}
@@ -122,7 +123,7 @@ class LegLost final : public driver::Transport {
   std::unique_ptr<driver::Transport> wire_;
 };
 
-TEST(SimulatedFalcon, IsLeftAloneOnceALegIsNotHomedAnyMore) {
+TEST(SimulatedFalcon, GetsNoForceAfterALegLosesHoming) {
   InProgram run;
   run.device.reset();
   auto made = std::make_unique<LegLost>(run.falcon->wire(run.clock));
@@ -151,7 +152,7 @@ TEST(SimulatedFalcon, IsLeftAloneOnceALegIsNotHomedAnyMore) {
   EXPECT_GT(run.device->wire_counters().rejected, 19U);
 }
 
-TEST(SimulatedFalcon, PushesItsHandAndRepeatsItself) {
+TEST(SimulatedFalcon, PushesItsHandBitIdentically) {
   InProgram first, second;
   ASSERT_TRUE(first.device->activate());
   ASSERT_TRUE(second.device->activate());
@@ -166,7 +167,8 @@ TEST(SimulatedFalcon, PushesItsHandAndRepeatsItself) {
   EXPECT_EQ(first.falcon->arm().truth().currents.norm(), 0);
 }
 
-/// Returns how far along y a driver that asks for 0.3 N moves the tip of a Falcon in 60 ms, m.
+/// Returns the distance (m) along y by which a driver that requests 0.3 N moves the tip of a Falcon
+/// in 60 ms.
 double pushed(const driver::JointModel<driver::DeltaArm>& model,
               const SimulatedArmSettings& settings) {
   const Eigen::Vector3d p_BM = driver::falcon::falcon_geometry().p_BM;
@@ -197,17 +199,17 @@ double pushed(const driver::JointModel<driver::DeltaArm>& model,
   return (*made)->arm().plant().p_BT().y() - begin;
 }
 
-TEST(SimulatedFalcon, PullsAsItsOwnMotorsWhateverTheDriverBelieves) {
+TEST(SimulatedFalcon, UsesItsOwnMotorConstants) {
   SimulatedArmSettings settings;
   settings.plant.mass = 0.15;
   auto weak = driver::falcon::falcon_model();
   for (driver::MotorDrive& drive : weak.drives) drive.torque_constant *= 0.5;
   const double whole = pushed(driver::falcon::falcon_model(), settings);
-  // Nobody holds it, though a hand has homed it: 0.3 N of 57 ms or so.
+  // No hand holds it, although a hand has homed it: 0.3 N for about 57 ms.
   EXPECT_NEAR(whole, 0.5 * 0.3 / 0.15 * 0.0575 * 0.0575, 2e-4);
   EXPECT_NEAR(pushed(weak, settings) / whole, 0.5, 0.01);
   settings.weight_B = {0, -0.15, 0};
-  settings.plant.coulomb = 0.2;  // so that it stays until it is pushed
+  settings.plant.coulomb = 0.2;  // so that it rests until it is pushed
   const double dry = pushed(driver::falcon::falcon_model(), settings);
   EXPECT_EQ(dry, 0) << "0.3 N less 0.15 N of weight do not overcome 0.2 N of friction";
   settings.weight_B = {0, 0.15, 0};

@@ -22,7 +22,7 @@ HandSettings tremulous(double amplitude) {
   return hand;
 }
 
-TEST(Tremor, NeverExceedsItsAmplitudeAndComesNearIt) {
+TEST(Tremor, ApproachesButNeverExceedsItsAmplitude) {
   Tremor tremor = Tremor::make(tremulous(300e-6), 1).value();
   Eigen::Vector3d largest(0, 0, 0);
   for (int k = 0; k < 200000; ++k) largest = largest.cwiseMax(tremor.at(k * kTick).cwiseAbs());
@@ -49,7 +49,7 @@ TEST(Tremor, KeepsItsPowerBetweenEightAndTwelveHertz) {
   EXPECT_LT(outside, 1e-20);
 }
 
-TEST(Tremor, DependsOnItsSeedAlone) {
+TEST(Tremor, DependsOnItsSeedOnly) {
   Tremor one = Tremor::make(tremulous(1), 5).value();
   Tremor same = Tremor::make(tremulous(1), 5).value();
   Tremor other = Tremor::make(tremulous(1), 6).value();
@@ -57,8 +57,8 @@ TEST(Tremor, DependsOnItsSeedAlone) {
   EXPECT_NE(one.at(1234 * kTick), other.at(1234 * kTick));
 }
 
-// By even steps, by uneven ones, by steps that change, held and going back.
-TEST(Tremor, IsTheSameByWhateverStepsItIsAsked) {
+// With even, uneven and changing steps, with repeated times, and backwards.
+TEST(Tremor, IsIndependentOfTheStepSize) {
   const Tremor fresh = Tremor::make(tremulous(1), 7).value();
   Tremor tremor = fresh;
   std::int64_t time_ns = 0;

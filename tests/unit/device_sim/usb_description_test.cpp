@@ -12,8 +12,8 @@ unsigned at(const std::vector<std::byte>& bytes, std::size_t i) {
   return std::to_integer<unsigned>(bytes.at(i));
 }
 
-// Reads a report descriptor as HID 1.11, 6.2.2 describes short items; sums the bits of all inputs
-// and outputs, and says whether collections and items close.
+// Parses the short items of a report descriptor (HID 1.11, 6.2.2). Sums the bits of all inputs and
+// outputs, and returns whether collections and items are closed.
 struct ReportSizes {
   unsigned in_bits = 0, out_bits = 0;
   bool well_formed = false;
@@ -68,7 +68,7 @@ class EveryArm : public testing::TestWithParam<ShelfEntry> {
   std::unique_ptr<UsbArm> arm_;
 };
 
-TEST_P(EveryArm, DescribesItselfWithoutContradiction) {
+TEST_P(EveryArm, DescriptorsAreConsistent) {
   const UsbDescription& d = arm_->description();
   const auto device = build_descriptor(d, kDeviceDescriptor, 0);
   ASSERT_EQ(device.size(), 18U);
@@ -112,7 +112,7 @@ TEST_P(EveryArm, DescribesItselfWithoutContradiction) {
   EXPECT_EQ(interfaces, d.interfaces.size());
 }
 
-TEST_P(EveryArm, NamesItselfInTheStringsItPromises) {
+TEST_P(EveryArm, HasAllPromisedStrings) {
   const UsbDescription& d = arm_->description();
   const auto device = build_descriptor(d, kDeviceDescriptor, 0);
   for (const std::size_t field : {14U, 15U, 16U}) {
@@ -155,7 +155,7 @@ TEST(UsbDescription, CutsStringsThatDoNotFit) {
   EXPECT_EQ(at(text, 0), 254U);
 }
 
-TEST(ArmShelf, AnswersAnUnknownNameWithTheKnownOnes) {
+TEST(ArmShelf, UnknownNameListsTheKnownArms) {
   const auto made = make_usb_arm("excalibur", {});
   ASSERT_FALSE(made.ok());
   for (const ShelfEntry& entry : kShelf) {

@@ -13,7 +13,7 @@ namespace {
 
 using Packet = std::vector<std::byte>;
 
-/// A device whose n-th packet is eight bytes of n, and which keeps what it gets.
+/// A device whose n-th packet is eight bytes of value n, and which stores received packets.
 class Numbered final : public UsbDevice {
  public:
   const UsbDescription& description() const noexcept override { return description_; }
@@ -38,7 +38,7 @@ class Numbered final : public UsbDevice {
 
 class Faulty : public testing::Test {
  protected:
-  /// Begins the next frame and polls endpoint 0x81.
+  /// Starts the next frame and polls endpoint 0x81.
   PacketResult poll() {
     device_.advance_to(++frame_ * 1'000'000);
     packet_.assign(UsbDevice::kPacketMax, std::byte{0xee});
@@ -63,7 +63,7 @@ class Faulty : public testing::Test {
   std::int64_t frame_ = 0;
 };
 
-TEST_F(Faulty, PassesEverythingUntouchedWithoutAnOrder) {
+TEST_F(Faulty, ChangesNothingWithoutAFault) {
   for (int i = 1; i <= 10; ++i) {
     EXPECT_EQ(poll().answer, Answer::kDone);
     EXPECT_EQ(packet_, of(i));
@@ -123,7 +123,7 @@ TEST_F(Faulty, RepeatsTheLastGoodPacketWhenStale) {
     EXPECT_EQ(packet_, of(2));
   }
   poll();
-  EXPECT_EQ(packet_, of(6));  // afterwards the newest, not what was missed
+  EXPECT_EQ(packet_, of(6));  // afterwards the newest packet, not the missed ones
 }
 
 TEST_F(Faulty, SendsEveryPacketTwiceWhenDuplicating) {
@@ -139,12 +139,12 @@ TEST_F(Faulty, SendsEveryPacketTwiceWhenDuplicating) {
   EXPECT_EQ(inner_.taken, (std::vector<Packet>{of(9), of(9)}));
 }
 
-TEST_F(Faulty, LosesPacketsThatWereTaken) {
+TEST_F(Faulty, LosesAcceptedPackets) {
   order("lost in for=3");
   EXPECT_EQ(poll().answer, Answer::kNak);
   EXPECT_EQ(poll().answer, Answer::kNak);
   EXPECT_EQ(poll().answer, Answer::kDone);
-  EXPECT_EQ(packet_, of(3));  // the first two are gone
+  EXPECT_EQ(packet_, of(3));  // the first two were dropped
   order("lost out");
   EXPECT_EQ(tell(5).answer, Answer::kDone);  // the host does not notice
   EXPECT_EQ(tell(6).size, 8U);
@@ -152,7 +152,7 @@ TEST_F(Faulty, LosesPacketsThatWereTaken) {
   EXPECT_EQ(device_.hits(FaultKind::kLost), 4U);
 }
 
-TEST_F(Faulty, FlipsAsManyBitsAsTheRateSays) {
+TEST_F(Faulty, FlipsBitsAtTheGivenRate) {
   order("bit_errors in rate=0.1");
   int flipped = 0;
   const int packets = 2000;
@@ -188,7 +188,7 @@ TEST_F(Faulty, KeepsTheLatestOrdersWhenThereAreTooMany) {
   EXPECT_EQ(poll().size, 4U);
 }
 
-TEST(FaultScript, ReadsWhatItDocuments) {
+TEST(FaultScript, ReadsTheDocumentedSyntax) {
   const auto order = parse_fault("  bit_errors out after=10 for=20 rate=0.25 ");
   ASSERT_TRUE(order.ok());
   EXPECT_EQ(order->kind, FaultKind::kBitErrors);
@@ -203,7 +203,7 @@ TEST(FaultScript, ReadsWhatItDocuments) {
   }
 }
 
-TEST(FaultScript, NamesTheWordItDoesNotUnderstand) {
+TEST(FaultScript, NamesAnUnknownWord) {
   for (const char* line : {"", "quake", "stall for=0", "stall for=x", "stall after=-1",
                            "bit_errors rate=2", "bit_errors rate=nan", "stall sideways"}) {
     const auto order = parse_fault(line);

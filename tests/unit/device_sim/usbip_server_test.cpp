@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::int32_t kStalled = -32, kBabble = -75, kUnlinked = -104;
 
-/// A device whose packets are easy to tell apart: each one to the host begins with its number.
+/// A device with distinguishable packets: each packet to the host begins with its number.
 class CountingDevice final : public UsbDevice {
  public:
   CountingDevice() {
@@ -111,7 +111,7 @@ TEST_F(UsbipServerTest, RefusesADeviceThatItDoesNotHave) {
   EXPECT_TRUE(host.hung_up());
 }
 
-/// A client whose socket a test has in its hand, and that reads nothing by itself.
+/// A client whose socket a test controls; it reads nothing by itself.
 class DeafClient {
  public:
   explicit DeafClient(UsbipServer& server) {
@@ -124,7 +124,7 @@ class DeafClient {
   DeafClient(const DeafClient&) = delete;
   DeafClient& operator=(const DeafClient&) = delete;
 
-  /// Sends what goes into the socket; returns how much did.
+  /// Sends as much as the socket accepts; returns the number of bytes.
   std::size_t say(std::span<const std::byte> bytes) const {
     const auto sent = send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     return sent > 0 ? static_cast<std::size_t>(sent) : 0;
@@ -144,7 +144,7 @@ class DeafClient {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-TEST_F(UsbipServerTest, TakesNoMoreFromClientThatDoesNotRead) {
+TEST_F(UsbipServerTest, StopsReadingFromClientThatDoesNotRead) {
   const DeafClient client(server_);
   client.say(encode_request({.kind = UsbipRequest::Kind::kImport, .bus_id = "1-1", .size = 0}));
   server_.serve(0);
@@ -152,7 +152,7 @@ TEST_F(UsbipServerTest, TakesNoMoreFromClientThatDoesNotRead) {
   const auto unlink = encode_command({.kind = UsbipCommand::Kind::kUnlink, .sequence = 1});
   std::vector<std::byte> many;
   for (int i = 0; i < 100; ++i) many.insert(many.end(), unlink.begin(), unlink.end());
-  // What the sockets hold is the kernel's and bounded; beyond that nothing goes in.
+  // The kernel bounds the buffers of the sockets; beyond that they accept nothing.
   std::size_t sent = 0;
   for (int i = 0; i < 20'000; ++i) {
     sent += client.say(many);
@@ -236,7 +236,7 @@ TEST_F(AttachedHost, AnswersTheRequestsOfAnEnumeration) {
   const auto start = host_.control(
       {.request_type = 0x80, .request = 6, .value = kConfigurationDescriptor << 8, .length = 9});
   ASSERT_TRUE(start.has_value());
-  EXPECT_EQ(start->data.size(), 9U);  // no more than was asked for
+  EXPECT_EQ(start->data.size(), 9U);  // at most the requested length
   const auto chosen = host_.control({.request_type = 0x80, .request = 8, .length = 1});
   ASSERT_TRUE(chosen.has_value());
   EXPECT_EQ(chosen->data, std::vector<std::byte>{std::byte{1}});
@@ -258,7 +258,7 @@ TEST_F(AttachedHost, HandsClassAndVendorRequestsToTheDevice) {
 TEST_F(AttachedHost, PollsAnInterruptEndpointOnceInAFrame) {
   std::vector<std::uint32_t> asked;
   for (int i = 0; i < 5; ++i) asked.push_back(host_.ask(1, 8));
-  EXPECT_FALSE(host_.done(asked[0]).has_value());  // nothing moves between frames
+  EXPECT_FALSE(host_.done(asked[0]).has_value());  // no transfer completes between frames
   const std::int64_t begin = host_.frame();
   host_.frames(5);
   for (int i = 0; i < 5; ++i) {
@@ -303,7 +303,7 @@ TEST_F(AttachedHost, CutsWhatItSendsIntoPackets) {
   EXPECT_EQ(device_.taken, sent);
 }
 
-TEST_F(AttachedHost, LetsTheHostWaitWhileTheDeviceSaysLater) {
+TEST_F(AttachedHost, HostWaitsWhileTheDeviceIsNotReady) {
   device_.silent = true;
   const std::uint32_t asked = host_.ask(1, 8), told = host_.tell(1, std::vector<std::byte>(8));
   host_.frames(100);
@@ -315,7 +315,7 @@ TEST_F(AttachedHost, LetsTheHostWaitWhileTheDeviceSaysLater) {
   EXPECT_TRUE(host_.done(told).has_value());
 }
 
-TEST_F(AttachedHost, TakesATransferBackOnlyWhileItWaits) {
+TEST_F(AttachedHost, CancelsOnlyPendingTransfers) {
   const std::uint32_t first = host_.ask(1, 8), second = host_.ask(1, 8);
   const std::uint32_t back = host_.take_back(second);
   EXPECT_EQ(host_.done(back)->status, kUnlinked);
@@ -339,7 +339,7 @@ TEST_F(AttachedHost, ReportsBabbleAndKeepsTheHostsBuffer) {
 TEST_F(AttachedHost, HaltsAStalledEndpointUntilTheHostClearsIt) {
   faulty_.order(*parse_fault("stall in for=1"));
   const std::uint32_t asked = host_.ask(1, 8);
-  // The order covers the frame that is running, the first packet falls into the next.
+  // The fault covers the current frame; the first packet is in the next one.
   faulty_.order(*parse_fault("stall in for=3"));
   host_.frames();
   EXPECT_EQ(host_.done(asked)->status, kStalled);
@@ -356,7 +356,7 @@ TEST_F(AttachedHost, HaltsAStalledEndpointUntilTheHostClearsIt) {
   EXPECT_EQ(host_.done(now)->status, 0);
 }
 
-TEST_F(AttachedHost, KnowsNoEndpointBeforeItIsConfigured) {
+TEST_F(AttachedHost, HasNoEndpointBeforeItIsConfigured) {
   host_.hang_up();
   support::UsbHost fresh(server_);
   ASSERT_TRUE(fresh.import_device());
@@ -381,17 +381,17 @@ TEST_F(AttachedHost, DisconnectsWhenTheDeviceLeaves) {
   EXPECT_TRUE(again.import_device());
 }
 
-TEST_F(AttachedHost, HangsUpOnWhatIsNoMessage) {
+TEST_F(AttachedHost, DisconnectsOnInvalidMessages) {
   host_.say(std::vector<std::byte>(64, std::byte{0xff}));
   EXPECT_TRUE(host_.hung_up());
 }
 
-TEST_F(AttachedHost, HangsUpOnAClientThatHoardsTransfers) {
+TEST_F(AttachedHost, DisconnectsClientWithTooManyTransfers) {
   for (std::size_t i = 0; i <= UsbipSession::kPendingMax; ++i) host_.ask(1, 8);
   EXPECT_TRUE(host_.hung_up());
 }
 
-TEST_F(UsbipServerTest, LivesThroughClientsThatTalkNonsense) {
+TEST_F(UsbipServerTest, SurvivesInvalidClients) {
   std::mt19937_64 random(support::seed_of(3));
   for (int round = 0; round < 300; ++round) {
     support::UsbHost host(server_);
@@ -429,7 +429,7 @@ TEST(Vhci, FindsTheFirstFreePortForAFullSpeedDevice) {
   EXPECT_EQ(find_free_port("\n\nhs\nhs x y\n"), std::nullopt);
 }
 
-TEST(Vhci, SaysWhatToDoWhenThisKernelHasNoVirtualHost) {
+TEST(Vhci, MissingVirtualHostErrorHasARemedy) {
   const auto attached = attach_to_kernel(1, "1-1", "/nonexistent/vhci_hcd.0");
   ASSERT_FALSE(attached.ok());
   EXPECT_NE(attached.error().message.find("modprobe vhci-hcd"), std::string::npos);

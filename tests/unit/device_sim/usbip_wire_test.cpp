@@ -48,7 +48,7 @@ TEST(UsbipWire, ReadsTheExampleOfTheKernelsDocumentation) {
   const auto bytes = from_hex(
       "00000001 00000d05 0001000f 00000001 00000001 00000200 00000040 ffffffff 00000000 00000004 "
       "00000000 00000000");
-  // The example leaves the number of packets 0 and puts -1 into the start frame.
+  // The example sets the number of packets to 0 and the start frame to -1.
   UsbipCommand command;
   ASSERT_EQ(decode_command(bytes, command), Decode::kWhole);
   EXPECT_EQ(command.sequence, 0xd05U);
@@ -59,7 +59,7 @@ TEST(UsbipWire, ReadsTheExampleOfTheKernelsDocumentation) {
   EXPECT_EQ(command.size, kUsbipHeaderSize);
 }
 
-TEST(UsbipWire, BringsEveryCommandOverAndTakesItInAnyPieces) {
+TEST(UsbipWire, DecodesEveryCommandFromAnyPieces) {
   std::mt19937_64 random(support::seed_of(1));
   for (int i = 0; i < 300; ++i) {
     const UsbipCommand sent = some_command(random);
@@ -83,7 +83,7 @@ TEST(UsbipWire, BringsEveryCommandOverAndTakesItInAnyPieces) {
   }
 }
 
-TEST(UsbipWire, RefusesWhatNoArmNeeds) {
+TEST(UsbipWire, RefusesUnsupportedCommands) {
   UsbipCommand command;
   command.length = kTransferMax + 1;
   EXPECT_EQ(decode_command(encode_command(command), command), Decode::kInvalid);
@@ -115,18 +115,20 @@ TEST(UsbipWire, LaysOutListAndImportAsDocumented) {
   EXPECT_EQ(list[0x144], std::byte{3});      // class of the first
   EXPECT_EQ(list[0x148], std::byte{7});      // class of the second
   EXPECT_EQ(encode_list(nullptr, "1-1").size(), 12U);
-  const auto import = encode_import(&device, std::string(99, 'x'));  // too long: cut, still closed
+  const auto import =
+      encode_import(&device, std::string(99, 'x'));  // too long: truncated, still terminated
   ASSERT_EQ(import.size(), kImportReplySize);
   EXPECT_EQ(import[0x108 + kBusIdSize - 1], std::byte{0});
   EXPECT_EQ(encode_import(nullptr, "1-1").size(), kImportRefusalSize);
 }
 
-TEST(UsbipWire, LivesThroughGarbageAndNeverReadsBeyondIt) {
+TEST(UsbipWire, SurvivesGarbageWithoutReadingBeyondIt) {
   std::mt19937_64 random(support::seed_of(7));
   const int rounds = support::long_form() ? 5'000'000 : 200'000;
   int whole = 0;
   for (int i = 0; i < rounds; ++i) {
-    // An exact-sized block on the heap, so that the address sanitizer sees any step beyond it.
+    // A block of the exact size on the heap, so that the address sanitizer detects any access
+    // beyond it.
     std::vector<std::byte> bytes = random() % 2 == 0 ? encode_command(some_command(random))
                                                      : std::vector<std::byte>(random() % 80);
     for (std::byte& byte : bytes) {

@@ -10,7 +10,7 @@
 
 namespace thimble::device_sim {
 
-/// The PHANTOM-like set with a hand in pinch grip [PHYSICS 0].
+/// Settings like those of a PHANTOM, with a hand in pinch grip [PHYSICS 0].
 inline SimulatedArmSettings phantom_like() {
   SimulatedArmSettings settings;
   settings.plant = {.mass = 0.075, .viscous = 0.005, .coulomb = 0.04};
@@ -21,7 +21,7 @@ inline SimulatedArmSettings phantom_like() {
   return settings;
 }
 
-/// The same without a hand and without friction: what is pushed stays in motion.
+/// The same without hand and friction: a pushed arm stays in motion.
 inline SimulatedArmSettings free_arm() {
   SimulatedArmSettings settings = phantom_like();
   settings.hand = {};
@@ -41,7 +41,7 @@ inline auto drive_message(std::int16_t a_mA, std::int16_t b_mA, std::int16_t c_m
   return driver::hfab::encode_output({.current_mA = {a_mA, b_mA, c_mA}, .command = 0});
 }
 
-/// Takes the newest report of an arm and decodes it; fails by an empty optional.
+/// Reads and decodes the newest report of an arm; empty on failure.
 inline std::optional<driver::hfab::InputReport> take(SimulatedArm& arm) {
   std::array<std::byte, driver::kReportCapacity> buffer;
   std::uint32_t skipped = 0;

@@ -1,6 +1,6 @@
-// The laws of one dimension [PHYSICS 1], with nothing but the plant's exact map and a sampled
-// wall: evidence that the simulated arm shows what a real one would. The other laws: hard cases 1
-// to 8, tests/sim/hard_case_walls_test.cpp.
+// The laws in one dimension [PHYSICS 1], with only the plant's exact map and a sampled wall:
+// evidence that the simulated arm behaves like a real one. The other laws: hard cases 1 to 8,
+// tests/sim/hard_case_walls_test.cpp.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace thimble::device_sim {
 namespace {
 
-// Throws a free mass against a one-sided sampled wall; the first sample falls `phase` (0 to 1) of a
+// Throws a free mass against a one-sided sampled wall; the first sample is `phase` (0 to 1) of a
 // period after the entry.
 double restitution(double stiffness, std::int64_t period_ns, double phase) {
   AxisDynamics axis =

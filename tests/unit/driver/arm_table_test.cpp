@@ -8,7 +8,7 @@
 namespace thimble::driver {
 namespace {
 
-TEST(ArmTable, NamesEveryLanguageAndEveryBuildOnce) {
+TEST(ArmTable, NamesEveryProtocolAndGeometryOnce) {
   std::set<std::string_view> names;
   std::set<ArmKind> kinds;
   for (const ArmRow& row : arm_table()) {
@@ -23,7 +23,7 @@ TEST(ArmTable, NamesEveryLanguageAndEveryBuildOnce) {
   EXPECT_EQ(make_arm(ArmKind::kUnsupported, {}), nullptr);
 }
 
-TEST(ArmTable, KnowsWhatEachBoardSpeaks) {
+TEST(ArmTable, HasTheProtocolsOfEachBoard) {
   EXPECT_EQ(kind_of(BoardKind::kMbedHid8), ArmKind::kWoody);
   EXPECT_EQ(kind_of(BoardKind::kMbedHid14), ArmKind::kPolhem);
   EXPECT_EQ(kind_of(BoardKind::kTeensyRawHid64), ArmKind::kPolhem);
@@ -35,7 +35,7 @@ TEST(ArmTable, KnowsWhatEachBoardSpeaks) {
   EXPECT_EQ(kind_of(BoardKind::kOther), ArmKind::kUnsupported);
 }
 
-TEST(ArmTable, HasTheModelsThatAreCodeInTheOrderOfTheBuilds) {
+TEST(ArmTable, ModelsAreInTheOrderOfTheGeometries) {
   for (std::size_t i = 0; i < arm_shapes().size(); ++i) {
     const ShapeRow& row = arm_shapes()[i];
     if (row.built_in == nullptr) continue;
@@ -44,7 +44,7 @@ TEST(ArmTable, HasTheModelsThatAreCodeInTheOrderOfTheBuilds) {
   }
 }
 
-TEST(ArmTable, MakesAnArmOfEveryBuildForEveryLanguage) {
+TEST(ArmTable, MakesAnArmForEveryGeometryAndProtocol) {
   for (const ArmRow& row : arm_table()) {
     for (const ShapeRow& shape : arm_shapes()) {
       if (shape.built_in == nullptr) continue;

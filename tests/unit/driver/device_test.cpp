@@ -24,7 +24,7 @@ std::vector<std::byte> report(std::int16_t a = 0, std::int16_t b = 0, std::int16
   return {bytes.begin(), bytes.end()};
 }
 
-/// A device at home on a scripted wire, with its own time.
+/// A device in its home pose on a scripted wire, with its own clock.
 class DeviceTest : public ::testing::Test {
  protected:
   Result<std::unique_ptr<Device>> open() {
@@ -69,14 +69,14 @@ class DeviceTest : public ::testing::Test {
   std::unique_ptr<Device> device_;
 };
 
-TEST_F(DeviceTest, SaysWhyItCannotBeOpened) {
+TEST_F(DeviceTest, OpenErrorNamesTheReason) {
   EXPECT_NE(open().error().message.find("no report within 1000 ms"), std::string::npos);
 
   wire_.to_host.push_back({std::byte{1}, std::byte{2}});
-  EXPECT_NE(open().error().message.find("form that its driver does not know"), std::string::npos);
+  EXPECT_NE(open().error().message.find("unknown format"), std::string::npos);
 
   wire_.lost = true;
-  EXPECT_NE(open().error().message.find("gone from the wire"), std::string::npos);
+  EXPECT_NE(open().error().message.find("disconnected"), std::string::npos);
 }
 
 TEST_F(DeviceTest, RefusesLimitsThatAreNotPositiveNumbers) {
@@ -133,7 +133,7 @@ TEST_F(DeviceTest, FindsTheTipInTheWorld) {
   EXPECT_NEAR(device_->state().dt, 1e-3, 1e-15);
 }
 
-TEST_F(DeviceTest, SendsTheGatedForceAndTellsIt) {
+TEST_F(DeviceTest, SendsAndReportsTheGatedForce) {
   open_and_activate();
   settle({0, 0.5, 0});
   // 0.5 N at 0.138 m through 9:1 and 0.0234 N m/A, sign -1.
@@ -155,10 +155,10 @@ TEST_F(DeviceTest, SilentArmIsAFault) {
   }
   EXPECT_EQ(device_->fault(), Fault::kNoReports);
   EXPECT_EQ(ticks, 21);               // silence_limit_ns of 20 ms, then the next tick
-  EXPECT_EQ(last_currents(), kZero);  // in that very tick
+  EXPECT_EQ(last_currents(), kZero);  // in that same tick
 }
 
-TEST_F(DeviceTest, CountsAndSurvivesReportsItDoesNotKnow) {
+TEST_F(DeviceTest, CountsAndSurvivesUnknownReports) {
   open_and_activate();
   settle();
   wire_.to_host.push_back(std::vector<std::byte>(13));
@@ -196,7 +196,7 @@ TEST_F(DeviceTest, SendsZeroInTheTickOfAForceThatIsNotANumber) {
   EXPECT_EQ(device_->fault(), Fault::kForceNotFinite);
   EXPECT_EQ(device_->stage(), DeviceStage::kFault);
   EXPECT_EQ(device_->f_sent_W(), Eigen::Vector3d(0, 0, 0));
-  // It stays off until somebody activates the device again.
+  // It stays off until the device is activated again.
   wire_.to_host.push_back(report());
   tick({0, 0.5, 0});
   EXPECT_EQ(last_currents(), kZero);
@@ -236,7 +236,7 @@ TEST_F(DeviceTest, SendsZeroInTheSecondTickOfASmallerJump) {
   open_and_activate();
   settle();
   for (int k = 0; k < 2; ++k) {
-    wire_.to_host.push_back(report(600));  // 14 mm: as much as a tip may be off its home pose
+    wire_.to_host.push_back(report(600));  // 14 mm: the largest allowed distance from the home pose
     tick({0, 0.5, 0});
   }
   EXPECT_EQ(last_currents(), kZero);
@@ -244,7 +244,7 @@ TEST_F(DeviceTest, SendsZeroInTheSecondTickOfASmallerJump) {
   EXPECT_FALSE(device_->home_needed());
 }
 
-TEST_F(DeviceTest, LetsAnArmRefuseForAsLongAsTheLimitSaysAndNoLonger) {
+TEST_F(DeviceTest, RefusalBecomesAFaultAfterTheLimit) {
   open_and_activate();
   settle();
   const std::int64_t limit_ticks = support::vintage_settings().silence_limit_ns / kPeriod_ns;
@@ -293,7 +293,7 @@ TEST_F(DeviceTest, InsistsOnZeroForceOnce) {
   EXPECT_GT(insisted, 10);
   wire_.refusals = kMany;
   device_.reset();
-  EXPECT_LT(kMany - wire_.refusals, 4);  // the destructor's own zero, and no more
+  EXPECT_LT(kMany - wire_.refusals, 4);  // only the zero of the destructor
 }
 
 /// A WoodenHaptics arm, whose reports carry a number.
@@ -327,7 +327,7 @@ class NumberedReports : public ::testing::Test {
   std::unique_ptr<Device> device_;
 };
 
-TEST_F(NumberedReports, AreOldWhenTheyComeAgainAndStopTheForce) {
+TEST_F(NumberedReports, RepeatedNumbersStopTheForce) {
   for (int k = 65500; k < 65600; ++k) ASSERT_TRUE(tick(k));  // the number wraps
   ASSERT_GT(device_->f_sent_W().norm(), 0);
   int ticks = 0;
@@ -340,13 +340,13 @@ TEST_F(NumberedReports, AreOldWhenTheyComeAgainAndStopTheForce) {
   EXPECT_EQ(device_->wire_counters().repeated, 21u);
 }
 
-TEST_F(NumberedReports, ThatComeTwiceCostNothingButTheSecondOne) {
+TEST_F(NumberedReports, DuplicatesAreDroppedWithoutAFault) {
   for (int k = 0; k < 200; ++k) EXPECT_EQ(tick(1 + k / 2), k % 2 == 0);
   EXPECT_EQ(device_->fault(), Fault::kNone);
   EXPECT_EQ(device_->wire_counters().repeated, 100u);
 }
 
-TEST_F(NumberedReports, AreTakenFromABoardThatDoesNotCount) {
+TEST_F(NumberedReports, BoardWithConstantNumberIsAccepted) {
   for (int k = 0; k < 100; ++k) EXPECT_TRUE(tick(0));
   EXPECT_EQ(device_->fault(), Fault::kNone);
 }

@@ -11,15 +11,15 @@
 namespace thimble::driver {
 namespace {
 
-TEST(Discovery, ListsOnThisMachineWhatItCanOrSaysWhyItCannot) {
+TEST(Discovery, WorksOrReportsAnErrorOnThisMachine) {
   const auto arms = find_arms();
-  EXPECT_TRUE(arms || arms.error().message.find("cannot be listed") != std::string::npos);
+  EXPECT_TRUE(arms || arms.error().message.find("Cannot list USB devices") != std::string::npos);
 }
 
-TEST(Discovery, LooksIntoNothingOfADeviceButItsInterfaces) {
+TEST(Discovery, ReadsOnlyTheInterfacesOfADevice) {
   const support::FakeUsb usb("discovery_links");
   usb.plug("1-1", "1234", "0006", "WH01", 1, 2);
-  // As behind a link to the bus, which has all other devices in it.
+  // As behind a link to the bus, whose folder contains all other devices.
   const auto elsewhere = usb.root() / usb.device_folder("1-1") / "subsystem";
   std::filesystem::create_directories(elsewhere / "devices/hidraw/hidraw9");
   std::filesystem::create_directories(elsewhere / "tty/ttyACM9");
@@ -44,7 +44,7 @@ TEST(Discovery, FindsEachArmWithItsNodeAndItsName) {
   usb.plug("1-5", "2988", "0302", "T1", 1, 6);
   usb.plug("1-6", "0403", "6001", "CABLE", 1, 7);  // any other FTDI cable
   usb.plug("1-7", "16c0", "0482", "KEYBOARD", 1, 8);
-  usb.plug("1-8", "16c0", "05df", "OTHER", 1, 9);  // somebody else's device with a shared id
+  usb.plug("1-8", "16c0", "05df", "OTHER", 1, 9);  // another device with a shared id
 
   const auto arms = find_arms(usb.root());
   ASSERT_TRUE(arms) << arms.error().message;
@@ -71,7 +71,7 @@ TEST(Discovery, FindsEachArmWithItsNodeAndItsName) {
   EXPECT_EQ((*arms)[4].certainty, Certainty::kUnsupported);
 }
 
-/// One USB device, and what may be said of it before anything was opened.
+/// A USB device, and its expected identification before it is opened.
 struct Plugged {
   const char* vendor;
   const char* product_id;
@@ -82,19 +82,20 @@ struct Plugged {
   BoardKind board;
 };
 
-TEST(Discovery, TakesABoardForAnArmOnlyByWhatIsTheArmsOwn) {
+TEST(Discovery, IdentifiesAnArmOnlyByItsOwnProperties) {
   constexpr Plugged kBoards[] = {
-      // The published boards: examples of mbed and Teensy, whose ids and strings anybody has.
+      // The published boards: examples of mbed and Teensy, whose ids and strings other devices
+      // share.
       {"1234", "0006", "HID DEVICE", 8, false, Certainty::kProvesItself, BoardKind::kMbedHid8},
       {"1234", "0006", "HID DEVICE", 14, false, Certainty::kUnknown, BoardKind::kMbedHid14},
       {"16c0", "0486", "Teensyduino RawHID", 64, false, Certainty::kUnknown,
        BoardKind::kTeensyRawHid64},
       {"16c0", "0483", "USB Serial", 0, true, Certainty::kUnknown, BoardKind::kTextLines},
       {"16c0", "048a", "Teensy MIDI", 0, true, Certainty::kUnknown, BoardKind::kTextLines},
-      // A maker who names the arm.
+      // The product string names the arm.
       {"1234", "0006", "Polhem", 14, false, Certainty::kKnown, BoardKind::kMbedHid14},
       {"16c0", "0483", "Haptikfabriken arm", 0, true, Certainty::kKnown, BoardKind::kTextLines},
-      // Another maker's arm, and forms that no arm has.
+      // Another manufacturer's arm, and properties that no arm has.
       {"16c0", "0483", "Haply inverse3", 0, true, Certainty::kUnsupported, BoardKind::kOther},
       {"16c0", "0483", "Haply robot", 0, true, Certainty::kUnsupported, BoardKind::kOther},
       {"16c0", "0483", "Inverse3", 0, true, Certainty::kUnsupported, BoardKind::kOther},
@@ -121,9 +122,9 @@ TEST(Discovery, TakesABoardForAnArmOnlyByWhatIsTheArmsOwn) {
   }
 }
 
-// The rule gives access to the boards that discovery takes for arms by their product string, and to
-// no other Teensy: in udev's globs, alternatives stand between bars.
-TEST(Discovery, AgreesWithTheUdevRuleAboutTheTeensiesThatAreArms) {
+// The rule gives access to the boards that discovery identifies as arms by their product string,
+// and to no other Teensy. In udev's globs, bars separate alternatives.
+TEST(Discovery, TeensyArmsMatchTheUdevRule) {
   std::ifstream rules(std::filesystem::path(THIMBLE_SOURCE_DIR) / "udev/70-thimble.rules");
   int lines = 0;
   for (std::string line; std::getline(rules, line);) {
@@ -151,7 +152,7 @@ TEST(Discovery, AgreesWithTheUdevRuleAboutTheTeensiesThatAreArms) {
 
 TEST(Discovery, AmbiguousSerialNumbersUseTheSocketName) {
   const support::FakeUsb usb("discovery_names");
-  usb.plug("1-1.4", "1234", "0006", "0123456789", 1, 2);  // as every mbed board
+  usb.plug("1-1.4", "1234", "0006", "0123456789", 1, 2);  // as on every mbed board
   usb.plug("1-2", "1234", "0006", "0123456789", 1, 3);
   usb.plug("1-3", "16c0", "0483", "SIM0001", 1, 4);
   usb.plug("1-4", "0403", "cb48", "SIM0001", 1, 5);
@@ -163,7 +164,7 @@ TEST(Discovery, AmbiguousSerialNumbersUseTheSocketName) {
   EXPECT_EQ(names, (std::vector<std::string>{"usb-1-1.4", "usb-1-2", "usb-1-3", "usb-1-4", "F1"}));
 }
 
-TEST(Discovery, TakesACountedOrRepeatedSignForNoName) {
+TEST(Discovery, PlaceholderSerialNumbersAreNoName) {
   for (const char* serial : {"", "0123456789", "1234567890", "123456", "0000", "FFFFFFFF"}) {
     EXPECT_TRUE(is_placeholder(serial)) << serial;
   }
@@ -172,13 +173,13 @@ TEST(Discovery, TakesACountedOrRepeatedSignForNoName) {
   }
 }
 
-TEST(Discovery, LetsNoStringOfADeviceSpeakToTheTerminal) {
+TEST(Discovery, ReplacesControlCharactersInDeviceStrings) {
   const support::FakeUsb usb("discovery_escape");
   usb.plug("1-1", "0403", "cb48", "F\x1b[2J", 1, 2);
   EXPECT_EQ(find_arms(usb.root())->front().name(), "F?[2J");
 }
 
-TEST(Discovery, TellsAnArmWithoutANodeOrWithoutAccess) {
+TEST(Discovery, ReportsAnArmWithoutNodeOrAccess) {
   const support::FakeUsb usb("discovery_access");
   usb.plug("1-1", "1234", "0006", "WH01", 1, 2);
   auto arms = find_arms(usb.root());
@@ -188,10 +189,10 @@ TEST(Discovery, TellsAnArmWithoutANodeOrWithoutAccess) {
   EXPECT_FALSE(arms->front().accessible);
 }
 
-TEST(Discovery, SaysSoWhenThereIsNoUsbAtAll) {
+TEST(Discovery, MissingUsbIsAnError) {
   const auto arms = find_arms(support::scratch_folder() / "nothing_here");
   ASSERT_FALSE(arms);
-  EXPECT_NE(arms.error().message.find("cannot be listed"), std::string::npos);
+  EXPECT_NE(arms.error().message.find("Cannot list USB devices"), std::string::npos);
 }
 
 }  // namespace

@@ -56,8 +56,8 @@ TEST(Gimbal, TurnsAboutItsAxesOneAfterTheOther) {
   }
 }
 
-/// Where the last link points, from three positions of the tip: half of what the tip does when the
-/// link is as long again.
+/// Returns the direction of the last link: the direction in which the tip moves if the link is made
+/// longer.
 template <class Geometry>
 Vector3d direction(const Geometry& arm, double Geometry::*last, const Vector3d& q) {
   Geometry longer = arm;
@@ -69,7 +69,7 @@ Vector3d direction(const Geometry& arm, double Geometry::*last, const Vector3d& 
   return (p_longer - p).normalized();
 }
 
-TEST(Gimbal, StandsOnALastLinkWhoseXPointsToTheTipAndWhoseYIsLevel) {
+TEST(Gimbal, LastLinkFrameHasXToTheTipAndYLevel) {
   support::Random random(3);
   const auto vintage = support::vintage_model();
   const auto polhem = hfab::polhem_model();
@@ -92,7 +92,7 @@ TEST(Gimbal, StandsOnALastLinkWhoseXPointsToTheTipAndWhoseYIsLevel) {
   EXPECT_EQ(falcon::falcon_geometry().last_link({}, {}), Matrix3d(Matrix3d::Identity()));
 }
 
-TEST(Gimbal, OfThePolhemTurnsTheStylusAsThePublishedLibraryDoes) {
+TEST(Gimbal, PolhemGimbalMatchesThePublishedLibrary) {
   // R = rot_z(tA) rot_y(-lambda) rot_x(tD) rot_y(tE) rot_x(tF), lambda: climb of the forearm [S
   // hfabapi hfab_api.cpp, getRot].
   ArmModel model = arm_model(hfab::polhem_model());
@@ -110,7 +110,7 @@ TEST(Gimbal, OfThePolhemTurnsTheStylusAsThePublishedLibraryDoes) {
         count = static_cast<std::int32_t>(random.uniform(-400, 400));
       }
       const ArmPose pose = arm->pose(reading);
-      if (!pose.p_BT.allFinite()) continue;  // its bars cannot meet there
+      if (!pose.p_BT.allFinite()) continue;  // its bars cannot meet in this pose
       const LinkageArm& g = std::get<LinkageArm>(model.geometry);
       const Vector3d out(std::cos(pose.q[0]), std::sin(pose.q[0]), 0);
       const Vector3d elbow = (g.length_0 / 2 + g.length_1 * std::cos(pose.q[1])) * out +
@@ -136,7 +136,7 @@ TEST(Gimbal, OfThePolhemTurnsTheStylusAsThePublishedLibraryDoes) {
   }
 }
 
-TEST(Gimbal, IsNothingToAnArmWithoutOne) {
+TEST(Gimbal, ArmWithoutGimbalLeavesOrientationUnchanged) {
   const auto arm = make_arm(ArmKind::kPolhem, arm_model(hfab::polhem_model()));
   EXPECT_FALSE(arm->has_gimbal());
   Vector3d angles(1, 2, 3);
@@ -154,7 +154,7 @@ TEST(Orientation, QuaternionRoundTripKeepsEveryStep) {
     const TipQuaternion q = quaternion_of(R);
     EXPECT_LT((rotation_of(q) - R).norm(), 1e-6);
     EXPECT_GE(q[0], 0);
-    // What is recorded gives the very matrix that the law saw.
+    // The recorded quaternion gives exactly the matrix that the law got.
     EXPECT_EQ(rotation_of(q), rotation_of(TipQuaternion(q)));
   }
   EXPECT_EQ(quaternion_of(Matrix3d::Constant(NAN)), TipQuaternion{});

@@ -1,5 +1,5 @@
-// A board that restarts on a live wire counts from zero where it stands: no force before the home
-// pose.
+// A board that restarts on a live wire counts from zero at its present pose: no force before the
+// home pose is confirmed.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace thimble::driver::home_needed_test {
 namespace {
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
-constexpr std::array<std::int16_t, 3> kAway{1500, 800, 0};  // some 45 mm from the home pose
+constexpr std::array<std::int16_t, 3> kAway{1500, 800, 0};  // about 45 mm from the home pose
 
 /// The vintage arm with absolute encoders.
 struct AbsoluteWire : hfab::ReportWire {
@@ -27,7 +27,7 @@ struct AbsoluteWire : hfab::ReportWire {
 };
 using AbsoluteArm = WireArm<AbsoluteWire, SerialArm>;
 
-/// An arm that pushes, on a wire that the test writes: `tick` brings a report, `missing` none.
+/// An arm that pushes, on a scripted wire: `tick` has a report, `missing` has none.
 class HomeNeeded : public ::testing::Test {
  protected:
   void open(std::unique_ptr<const Arm> arm) {
@@ -68,7 +68,7 @@ class HomeNeeded : public ::testing::Test {
   }
   double force() const { return device_->f_sent_W().norm(); }
 
-  /// Expects that forces come only with a home check.
+  /// Expects that forces require a home check.
   void expect_home_needed() {
     EXPECT_TRUE(device_->home_needed());
     EXPECT_FALSE(device_->activate());
@@ -95,7 +95,7 @@ TEST_F(HomeNeeded, AfterASilence) {
   expect_home_needed();
 }
 
-TEST_F(HomeNeeded, AfterASilenceInWhichMessagesAreRefused) {
+TEST_F(HomeNeeded, AfterASilenceWithRefusedMessages) {
   tick(kAway);
   wire_.refusals = 1000;
   for (int k = 0; k < 500; ++k) missing();
@@ -109,7 +109,8 @@ TEST_F(HomeNeeded, AfterAJumpAcrossAGapOfAnyLength) {
     SetUp();
     for (int k = 0; k < gap; ++k) missing();
     tick({0, 0, 0});
-    tick({0, 0, 0});  // short gaps: the first is dropped as a disturbed encoder line is
+    tick({0, 0,
+          0});  // short gaps: the first report is dropped like one from a disturbed encoder line
     EXPECT_EQ(device_->fault(), Fault::kCountsJumped) << gap;
     EXPECT_EQ(force(), 0) << gap;
     EXPECT_TRUE(device_->home_needed()) << gap;
@@ -125,7 +126,7 @@ TEST_F(HomeNeeded, AfterAJumpWithoutAGap) {
 }
 
 TEST_F(HomeNeeded, NotAfterAMotionAcrossAGap) {
-  // 0.5 m/s at the tip: some 15 counts in a millisecond.
+  // 0.5 m/s at the tip: about 15 counts per millisecond.
   std::int16_t yaw = kAway[0];
   for (int k = 0; k < 50; ++k) tick({yaw = static_cast<std::int16_t>(yaw - 15), kAway[1], 0});
   for (int k = 0; k < 15; ++k) missing();
@@ -177,21 +178,21 @@ TEST_F(HomeNeeded, AfterASilenceBeforeForces) {
   expect_home_needed();
 }
 
-TEST_F(HomeNeeded, NotWhereTheCallerWasAway) {
+TEST_F(HomeNeeded, NotAfterTheCallerPaused) {
   open(std::make_unique<hfab::HfabArm>(support::vintage_model()));
   for (const std::int64_t away_ns : {1'000'000'000, 50'000'000}) {
     now_ns_ += away_ns;
-    device_->idle(now_ns_, now_ns_);  // the report is not there yet
+    device_->idle(now_ns_, now_ns_);  // the report has not arrived yet
     now_ns_ += kPeriod_ns;
-    wire_.to_host.push_back(report({0, 0, 0}));  // the hand moved it meanwhile
+    wire_.to_host.push_back(report({0, 0, 0}));  // the hand moved the arm meanwhile
     device_->idle(now_ns_, now_ns_);
     EXPECT_FALSE(device_->home_needed());
     EXPECT_EQ(device_->link_state(), LinkState::kConnected);
   }
 }
 
-TEST_F(HomeNeeded, NotWhereTheCallerSendsNothing) {
-  // An arm that speaks only when spoken to is silent then.
+TEST_F(HomeNeeded, NotIfTheCallerSendsNothing) {
+  // An arm that only answers messages is silent then.
   tick(kAway);
   wire_.to_host.push_back(report(kAway));
   for (int k = 0; k < 30; ++k) {

@@ -31,7 +31,7 @@ Eigen::Vector3d force_of(const MotorCurrents& currents, const Eigen::Matrix3d& J
   return J_BT.transpose().inverse() * tau;
 }
 
-TEST(MotorCurrents, PushTheTipWithTheForceAskedFor) {
+TEST(MotorCurrents, ExertTheRequestedTipForce) {
   const auto model = support::vintage_model();
   support::Random random(31);
   for (int i = 0; i < 1000; ++i) {
@@ -61,7 +61,7 @@ TEST(MotorCurrents, KeepTheDirectionOfAForceBeyondTheMotors) {
 TEST(MotorCurrents, TurnTheWorldsForceIntoTheBase) {
   const auto model = support::vintage_model();
   const Eigen::Matrix3d J_BT = model.geometry.jacobian(support::vintage_home());
-  Eigen::Matrix3d R_WB;  // the base looks along the world's y
+  Eigen::Matrix3d R_WB;  // the x axis of the base is the world's y axis
   R_WB << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   const MotorCurrents currents(gated({0, 1, 0}), R_WB, J_BT, model.drives);
   EXPECT_LT((force_of(currents, J_BT, model.drives) - Eigen::Vector3d(1, 0, 0)).norm(), 1e-12);

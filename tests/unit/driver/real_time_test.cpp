@@ -47,14 +47,14 @@ TEST_F(CpuLatencyTest, ForbidsSleepWhileItLives) {
   EXPECT_FALSE(held());
 }
 
-TEST_F(CpuLatencyTest, SaysSoWhereItIsRefused) {
+TEST_F(CpuLatencyTest, ReportsARefusal) {
   const CpuLatencyRequest request(root_);
   EXPECT_FALSE(request.granted());
   EXPECT_NE(request.advice().find("cpu_dma_latency was refused"), std::string::npos);
   EXPECT_NE(request.advice().find("thimble doctor"), std::string::npos);
 }
 
-TEST_F(CpuLatencyTest, SaysSoWhereTheKernelTakesNoRequest) {
+TEST_F(CpuLatencyTest, ReportsAnUnusableInterface) {
   fs::create_directory(file());
   const CpuLatencyRequest request(root_);
   EXPECT_FALSE(request.granted());

@@ -17,7 +17,7 @@ std::vector<std::byte> sensor_report() {
   return {bytes.begin(), bytes.end()};
 }
 
-/// An arm that answers each message, so that it never runs dry while it is plugged in.
+/// An arm that answers each message, so that reports are always available while it is plugged in.
 class AnsweringTransport final : public Transport {
  public:
   explicit AnsweringTransport(support::Wire& wire) : wire_(wire), inner_(wire) {}
@@ -36,7 +36,7 @@ class AnsweringTransport final : public Transport {
   support::ScriptedTransport inner_;
 };
 
-/// A loop in contact with a wall that always pushes; `at_tick` does things to the wire.
+/// A loop in contact with a wall that always pushes; `at_tick` changes the wire.
 class ReplugTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -109,15 +109,16 @@ TEST_F(ReplugTest, ReplugKeepsForceOffUntilActivated) {
   at_tick_ = [&](const TickRecord&) {
     const std::size_t tick = records_.size();
     if (tick == 500) wire_.lost = true;
-    if (tick == 550) device_->ask_to_activate();  // too early: the arm is not there
+    if (tick == 550) device_->ask_to_activate();  // too early: the arm is not plugged in
     if (tick == 600) offer(second_wire_);
-    if (tick == 700) device_->ask_to_activate();  // its counters are new: the home pose is needed
+    if (tick == 700)
+      device_->ask_to_activate();  // its counters restarted: the home pose is required
     if (tick == 800) device_->ask_to_activate(HomeCheck::kPassed);
   };
   EXPECT_EQ(run(1500), ServoEnd::kDone);
   ASSERT_EQ(records_.size(), 1500u);
   EXPECT_FALSE(records_[599].fresh);
-  EXPECT_TRUE(records_[601].fresh);  // positions are seen again at once
+  EXPECT_TRUE(records_[601].fresh);  // positions are available again at once
   EXPECT_EQ(device_->wire_counters().replugged, 1u);
   for (std::size_t i = 500; i < 800; ++i) {
     EXPECT_EQ(force(records_[i]), 0) << i;
@@ -129,7 +130,7 @@ TEST_F(ReplugTest, ReplugKeepsForceOffUntilActivated) {
   EXPECT_EQ(records_[801].stage, DeviceStage::kActive);
   EXPECT_LT(force(records_[802]), 0.05);  // soft start
   EXPECT_NEAR(force(records_[1499]), 0.5, 1e-9);
-  // Everything the new wire carried before the user's word, and after the end, is zero.
+  // All messages on the new wire before the user's activation, and after the end, are zero.
   ASSERT_GT(second_wire_.to_arm.size(), 800u);
   for (std::size_t i = 0; i < 200; ++i) EXPECT_TRUE(is_zero(second_wire_.to_arm[i])) << i;
   EXPECT_TRUE(is_zero(second_wire_.to_arm.back()));
@@ -152,7 +153,7 @@ TEST_F(ReplugTest, LossAfterAnotherFaultIsSeenAndReplugged) {
     EXPECT_EQ(run(800), ServoEnd::kDone);
     EXPECT_EQ(records_[150].link, LinkState::kConnected);
     EXPECT_EQ(records_[250].link, LinkState::kLost);
-    EXPECT_EQ(records_[250].fault, before) << "the first reason stays";
+    EXPECT_EQ(records_[250].fault, before) << "the first fault is kept";
     EXPECT_EQ(records_[350].link, LinkState::kConnected);
     EXPECT_EQ(records_[350].fault, before);
     EXPECT_EQ(force(records_[350]), 0);
@@ -162,7 +163,7 @@ TEST_F(ReplugTest, LossAfterAnotherFaultIsSeenAndReplugged) {
 }
 
 TEST_F(ReplugTest, LostLinkIsClosedBeforeItsSuccessorIsOpened) {
-  // A transport that says when it is closed.
+  // A transport that records when it is closed.
   struct Closing final : Transport {
     explicit Closing(bool& open) : open_(open) { open_ = true; }
     ~Closing() override { open_ = false; }
@@ -200,7 +201,7 @@ TEST_F(ReplugTest, LostLinkIsClosedBeforeItsSuccessorIsOpened) {
   EXPECT_FALSE(first_open);
   ASSERT_TRUE(device.offer(link(untaken_open, untaken)));
   device.close_lost_link();
-  EXPECT_FALSE(untaken_open) << "an offer that was not taken would keep the arm as well";
+  EXPECT_FALSE(untaken_open) << "an offer that was not accepted would also keep the arm open";
   ASSERT_TRUE(device.offer(link(last_open, last)));
   device.read(3'000'000, 0);
   EXPECT_EQ(device.link_state(), LinkState::kConnected);
@@ -229,9 +230,9 @@ TEST_F(ReplugTest, SurvivesManyPullsWithoutLosingAWire) {
 TEST_F(ReplugTest, NamesAnArmThatTakesNoMessages) {
   at_tick_ = [&](const TickRecord&) { transport_->refuses = records_.size() >= 500; };
   EXPECT_EQ(run(600), ServoEnd::kDone);
-  EXPECT_EQ(records_[510].fault, Fault::kNone);  // a moment is forgiven
+  EXPECT_EQ(records_[510].fault, Fault::kNone);  // a short refusal is no fault
   EXPECT_EQ(records_[530].fault, Fault::kRefused);
-  // What the arm took last stands, until its own watchdog switches it off.
+  // The last force that the arm accepted acts until its own watchdog switches it off.
   EXPECT_EQ(force(records_[530]), force(records_[499]));
   EXPECT_GT(force(records_[530]), 0);
   EXPECT_FALSE(device_->zero_assured());

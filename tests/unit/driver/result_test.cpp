@@ -7,7 +7,7 @@
 namespace thimble::driver {
 namespace {
 
-TEST(Result, HoldsAValueOrTheReasonWhyNot) {
+TEST(Result, HoldsAValueOrAnError) {
   const Result<int> good = 3;
   const Result<int> bad = Error{"No arm is plugged in."};
   EXPECT_TRUE(good.ok());
@@ -23,7 +23,7 @@ TEST(Result, MovesItsValueOut) {
   EXPECT_EQ(*taken, 7);
 }
 
-TEST(Result, OfVoidSaysWhetherAStepWorked) {
+TEST(Result, VoidResultReportsSuccess) {
   EXPECT_TRUE(Result<void>().ok());
   EXPECT_EQ(Result<void>(Error{"It did not."}).error().message, "It did not.");
 }

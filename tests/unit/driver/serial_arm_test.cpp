@@ -29,9 +29,9 @@ Eigen::Vector3d any_pose(const SerialArm& arm, support::Random& random) {
   }
 }
 
-TEST(SerialArm, PutsTheTipWhereThePublishedPosesAre) {
+TEST(SerialArm, TipMatchesPublishedPoses) {
   const SerialArm& vintage = kArms[0];
-  // Upper link level, lower link hanging: the home pose of the refit.
+  // Upper link level, lower link hanging: the home pose of the vintage PHANTOM.
   EXPECT_TRUE(vintage.forward({0, kPi / 2, 0}).isApprox(Eigen::Vector3d(0.138, 0, -0.112), 1e-15));
   // The same, a quarter turn to the user's right.
   EXPECT_TRUE(
@@ -75,7 +75,7 @@ TEST(SerialArm, HasTheJacobianOfItsForwardKinematics) {
   }
 }
 
-TEST(SerialArm, DoesTheSameVirtualWorkAtTheTipAsInTheJoints) {
+TEST(SerialArm, TipAndJointVirtualWorkAreEqual) {
   support::Random random(13);
   for (const SerialArm& arm : kArms) {
     for (int i = 0; i < kPoses; ++i) {
@@ -83,7 +83,7 @@ TEST(SerialArm, DoesTheSameVirtualWorkAtTheTipAsInTheJoints) {
       const Eigen::Vector3d qdot = random.in_box(3);
       const Eigen::Vector3d f_T_B = random.in_box(8.5);
       constexpr double kStep = 1e-6;
-      // The tip's velocity from the geometry alone, not from the Jacobian under test.
+      // The tip's velocity from the geometry only, not from the Jacobian under test.
       const Eigen::Vector3d v_BT =
           (arm.forward(q + kStep * qdot) - arm.forward(q - kStep * qdot)) / (2 * kStep);
       const Eigen::Vector3d tau = arm.jacobian(q).transpose() * f_T_B;
@@ -92,7 +92,7 @@ TEST(SerialArm, DoesTheSameVirtualWorkAtTheTipAsInTheJoints) {
   }
 }
 
-TEST(SerialArm, GivesPositionAndJacobianTogetherAsItGivesThemAlone) {
+TEST(SerialArm, CombinedPoseEqualsSeparateResults) {
   support::Random random(14);
   for (int i = 0; i < 100; ++i) {
     const Eigen::Vector3d q = any_pose(kArms[1], random);

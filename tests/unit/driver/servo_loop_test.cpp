@@ -14,7 +14,7 @@
 namespace thimble::driver {
 namespace {
 
-/// Keeps all records, without allocating while the loop runs.
+/// Stores all records without allocating during the loop.
 struct Records {
   std::vector<TickRecord> rows;
   explicit Records(std::size_t capacity) { rows.reserve(capacity); }
@@ -23,7 +23,7 @@ struct Records {
   }
 };
 
-/// A virtual clock that oversleeps once.
+/// A virtual clock that wakes too late once.
 class LateClock final : public Clock {
  public:
   std::int64_t late_at_ns = -1, late_by_ns = 0;
@@ -40,8 +40,8 @@ class LateClock final : public Clock {
   std::int64_t now_ns_ = 0;
 };
 
-/// A transport that always has a report of the arm at home, or moved on by some counts since the
-/// last one.
+/// A transport that always has a report: of the arm in its home pose, or moved by some counts since
+/// the last report.
 class HomeTransport final : public Transport {
  public:
   HomeTransport(support::Wire& wire, const std::int16_t& counts) : wire_(wire), counts_(counts) {}
@@ -88,7 +88,7 @@ class ServoLoopTest : public ::testing::Test {
   std::atomic<bool> stop_{false};
 };
 
-TEST_F(ServoLoopTest, RunsItsTicksAtEvenTimesAndLeavesWithZeroForce) {
+TEST_F(ServoLoopTest, RunsEvenlyAndEndsWithZeroForce) {
   VirtualClock clock;
   Records records(2000);
   auto law = [](const DeviceState&) noexcept {
@@ -129,7 +129,7 @@ TEST_F(ServoLoopTest, StepAfterTheEndSendsNothing) {
   EXPECT_EQ(records.rows.size(), 3u);
 }
 
-TEST_F(ServoLoopTest, CopiesALawAndASinkAsWhatTheyReferTo) {
+TEST_F(ServoLoopTest, CopiesOfLawAndSinkReferToTheOriginal) {
   auto law = [](const DeviceState&) noexcept {
     return ForceCommand{.f_T_W = {1, 2, 3}, .touch = {}};
   };
@@ -165,7 +165,7 @@ TEST_F(ServoLoopTest, SkipsMissedTicksInsteadOfRunningThemInABurst) {
   EXPECT_EQ(records.rows[5].due_ns, 5'000'000);
 }
 
-/// A law that keeps when it was told to prepare itself, and for what.
+/// A law that records the times and states of its calls to prepare.
 struct PreparedLaw {
   const Clock& clock;
   struct Call {
@@ -191,7 +191,7 @@ struct PreparedLaw {
 
 TEST_F(ServoLoopTest, LawPreparesBeforeEachPunctualTick) {
   LateClock clock;
-  clock.late_at_ns = 4'990'000;  // woken 2.3 ms too late for what comes before the tick at 5 ms
+  clock.late_at_ns = 4'990'000;  // wakes 2.3 ms too late to prepare the tick at 5 ms
   clock.late_by_ns = 2'300'000;
   Records records(100);
   PreparedLaw law(clock);
@@ -210,12 +210,12 @@ TEST_F(ServoLoopTest, LawPreparesBeforeEachPunctualTick) {
     EXPECT_EQ(call.expected_p_WT, on_its_way);
   }
   EXPECT_GT(law.calls.back().v_WT.norm(), 1e-3);
-  // None before the first tick, which is due at once, and none before the late one.
+  // No call before the first tick, which is due at once, and none before the late tick.
   EXPECT_EQ(calls, (std::vector<std::int64_t>{990, 1990, 2990, 3990, 7990, 8990}));
   EXPECT_EQ(before, (std::vector<std::uint64_t>{1, 2, 3, 4, 6, 7}));
 }
 
-TEST_F(ServoLoopTest, LetsNoLawPrepareItselfUnasked) {
+TEST_F(ServoLoopTest, DoesNotPrepareLawsByDefault) {
   VirtualClock clock;
   Records records(100);
   PreparedLaw law(clock);
@@ -237,7 +237,7 @@ TEST_F(ServoLoopTest, StopsWithinOneTickOfTheStopFlagAndSendsZero) {
   EXPECT_TRUE(ends_in_zero());
 }
 
-TEST_F(ServoLoopTest, EndsInTheTickOfAFaultWithZeroForceAndItsName) {
+TEST_F(ServoLoopTest, FaultEndsTheLoopWithZeroForce) {
   VirtualClock clock;
   Records records(1000);
   auto law = [](const DeviceState& state) noexcept {
@@ -265,7 +265,7 @@ TEST_F(ServoLoopTest, EndsWhenTheArmIsPulledOff) {
   EXPECT_EQ(records.rows.size(), 351u);
 }
 
-TEST_F(ServoLoopTest, LeavesZeroForceBehindWhenTheApplicationThrows) {
+TEST_F(ServoLoopTest, ExceptionLeavesZeroForce) {
   VirtualClock clock;
   Records records(1000);
   auto law = [](const DeviceState&) noexcept {
@@ -285,12 +285,12 @@ TEST_F(ServoLoopTest, LeavesZeroForceBehindWhenTheApplicationThrows) {
   EXPECT_TRUE(ends_in_zero());
 }
 
-TEST(WallClock, SleepsUntilTheTimeAskedForAndNotLess) {
+TEST(WallClock, SleepsAtLeastUntilTheRequestedTime) {
   WallClock clock;
   const std::int64_t start_ns = clock.now_ns();
   clock.sleep_until_ns(start_ns + 3'000'000);
   EXPECT_GE(clock.now_ns(), start_ns + 3'000'000);
-  clock.sleep_until_ns(start_ns);  // in the past: at once, and no harm
+  clock.sleep_until_ns(start_ns);  // in the past: returns at once
   EXPECT_GE(clock.now_ns(), start_ns + 3'000'000);
 }
 

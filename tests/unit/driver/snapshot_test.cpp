@@ -9,7 +9,7 @@
 namespace thimble::driver {
 namespace {
 
-/// A value whose parts must agree, so that a torn read shows.
+/// A value whose parts must agree, so that a torn read is detected.
 struct Value {
   std::uint64_t number = 0;
   std::array<std::uint64_t, 40> copies{};
@@ -29,7 +29,7 @@ bool whole(const Value& value) {
   return value.odd_size == static_cast<std::uint32_t>(value.number);
 }
 
-TEST(Snapshot, HasNothingToShowBeforeTheFirstStore) {
+TEST(Snapshot, IsEmptyBeforeTheFirstStore) {
   Snapshot<Value> snapshot;
   Value value = value_of(5);
   EXPECT_FALSE(snapshot.load(value));

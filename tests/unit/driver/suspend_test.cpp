@@ -1,4 +1,5 @@
-// The computer sleeps while a force stands. Own program: it stands in for the kernel's clocks.
+// Suspend of the computer during a run. A separate program, because it replaces the clock functions
+// of the C library.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <time.h>
@@ -18,7 +19,8 @@ std::atomic<std::int64_t> slept_ns{0};
 
 }  // namespace
 
-// In front of the C library's: CLOCK_BOOTTIME is ahead of CLOCK_MONOTONIC by what was slept.
+// Replaces the function of the C library: CLOCK_BOOTTIME is ahead of CLOCK_MONOTONIC by the time of
+// the suspend.
 extern "C" int clock_gettime(clockid_t id, timespec* now) noexcept {
   using Original = int (*)(clockid_t, timespec*);
   static const auto original = reinterpret_cast<Original>(dlsym(RTLD_NEXT, "clock_gettime"));
@@ -47,7 +49,7 @@ extern "C" int clock_nanosleep(clockid_t id, int flags, const timespec* until,
 namespace thimble::driver::suspend_test {
 namespace {
 
-/// Tells the ticks, and lets the computer sleep after one of them.
+/// Counts the ticks and suspends the computer after one of them.
 struct Sleep {
   std::uint64_t after = 400;
   std::int64_t lasts_ns = 0;
@@ -58,12 +60,12 @@ struct Sleep {
   }
 };
 
-/// Presses by 3.4 N in real time; the computer sleeps in between.
+/// Presses with 3.4 N in real time; the computer is suspended in between.
 class SuspendTest : public ::testing::Test {
  protected:
   void press(std::int64_t lasts_ns) {
     WallClock clock(0);
-    // The machine may be held up as well, which is no matter here.
+    // The machine may also be delayed, which does not matter here.
     DeviceSettings settings = support::moved_settings();
     settings.limits.stall_ns = 900'000'000;
     settings.limits.watchdog_ns = 1'000'000'000;
@@ -112,7 +114,7 @@ TEST_F(SuspendTest, LateTickWithoutSleepIsNoSuspend) {
   EXPECT_NE(device_->fault(), Fault::kSuspended);
 }
 
-TEST(WallClock, GoesOnWhileTheComputerSleeps) {
+TEST(WallClock, AdvancesDuringSuspend) {
   const WallClock clock(0);
   const std::int64_t before = clock.now_ns();
   slept_ns += 3'600'000'000'000;

@@ -39,8 +39,8 @@ TEST(VelocityEstimator, KeepsItsEstimateWhenNoTimePasses) {
 }
 
 TEST(VelocityEstimator, SpreadsOneEncoderStepOverTime) {
-  // The noise of a damper B on an encoder of step s is B s / T without a pole, a times that with
-  // one.
+  // The noise of a damper B on an encoder of step s is B s / T without a pole, and `a` times this
+  // value with one.
   constexpr double kStep = 30e-6;
   VelocityEstimator plain(0), smooth(30);
   for (auto* estimator : {&plain, &smooth}) estimator->update({0, 0, 0}, kSamplePeriod);

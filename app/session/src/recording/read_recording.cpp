@@ -91,7 +91,7 @@ driver::Result<Recording> read_recording(const std::filesystem::path& path) {
   if (!read) return damaged(read.error().message);
   driver::ApartReader in(read->bytes());
   H5Head head;
-  if (!in.take(&head, sizeof head)) return damaged("breaks its reader");
+  if (!in.take(&head, sizeof head)) return damaged("crashes its reader");
   if (head.good != 1) {
     const auto left = in.left();
     return wrong(std::string(reinterpret_cast<const char*>(left.data()), left.size()));
@@ -105,7 +105,7 @@ driver::Result<Recording> read_recording(const std::filesystem::path& path) {
     return wrong("what the recording is of cannot be read; the file is damaged.");
   }
   if (!take_info(in, info) || !take_ticks(head, in.left(), recording)) {
-    return damaged("breaks its reader");
+    return damaged("crashes its reader");
   }
   const auto bad = std::find_if_not(recording.ticks.begin(), recording.ticks.end(), sound);
   if (bad != recording.ticks.end()) {

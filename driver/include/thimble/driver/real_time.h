@@ -14,12 +14,12 @@ struct RealTimeGrant {
   bool memory_locked = false;  ///< True if memory is locked (mlockall).
   /// True if the processors are kept from deep sleep (CpuLatencyRequest).
   bool cpu_awake = false;
-  std::string advice;  ///< How to obtain what was refused; empty if nothing was.
+  std::string advice;  ///< Remedies for refused requests; empty if none was refused.
 };
 
 /// Requests that the kernel run the calling thread before all others (SCHED_FIFO at `priority`, 1
 /// to 99) and keep the process in memory. A refusal is not an error: the loop runs with more
-/// jitter, and `advice` says so. Real-time: never once the loop runs; call it first on the servo
+/// jitter, and `advice` reports it. Real-time: never once the loop runs; call it first on the servo
 /// thread.
 THIMBLE_EXPORT RealTimeGrant enter_real_time(int priority = 80);
 
@@ -29,8 +29,8 @@ THIMBLE_EXPORT RealTimeGrant enter_real_time(int priority = 80);
 /// take 100 us or more to wake up. Real-time: never from the servo thread.
 class THIMBLE_EXPORT CpuLatencyRequest {
  public:
-  /// Makes the request, below the folder `root`. A refusal is not an error; `advice` says what to
-  /// do.
+  /// Makes the request, below the folder `root`. A refusal is not an error; `advice` states the
+  /// remedy.
   explicit CpuLatencyRequest(const std::filesystem::path& root = "/");
   /// Ends the request.
   ~CpuLatencyRequest();
@@ -39,7 +39,7 @@ class THIMBLE_EXPORT CpuLatencyRequest {
 
   /// Returns whether the kernel granted the request.
   bool granted() const noexcept { return file_ >= 0; }
-  /// Returns a sentence that says what to do about a refusal; empty if the request was granted.
+  /// Returns the remedy for a refusal as a sentence; empty if the request was granted.
   const std::string& advice() const noexcept { return advice_; }
 
  private:

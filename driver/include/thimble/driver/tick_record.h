@@ -59,7 +59,7 @@ struct TickRecord {
   std::array<double, 3> v_WT{};          ///< Velocity of the tip, m/s.
   std::array<double, 3> p_WP{};          ///< Position of the proxy, m.
   std::array<double, 3> n_W{};           ///< Unit normal of the contact.
-  std::array<double, 3> f_wanted_W{};    ///< Requested force, N: what the force law asked for.
+  std::array<double, 3> f_wanted_W{};    ///< Force requested by the force law, N.
   std::array<double, 3> f_sent_W{};      ///< Acting force, N: `Device::f_sent_W`.
   std::array<double, 3> heat{};          ///< Heat of the motors; 1 is the limit of the winding.
   /// Quaternion of the stylus (w, x, y, z); zeros: unknown.

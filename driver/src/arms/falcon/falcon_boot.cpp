@@ -77,12 +77,12 @@ Result<std::vector<std::byte>> read_firmware(const std::filesystem::path& file) 
   const bool too_large = is_regular(file) && std::filesystem::file_size(file, status) > kLargest;
   if (!bytes && !too_large) {
     return Error{"The firmware file " + file.string() +
-                 " cannot be read. Give the path of the image that came with the Falcon's "
-                 "software; Thimble does not ship it."};
+                 " cannot be read. Pass the path of the image that came with the Falcon's "
+                 "software; Thimble does not include it."};
   }
   if (!bytes || bytes->empty()) {
-    return Error{file.string() + " is no Falcon firmware: it holds " +
-                 (bytes ? "nothing." : "more than 64 kB.")};
+    return Error{file.string() + " is not Falcon firmware: it is " +
+                 (bytes ? "empty." : "larger than 64 kB.")};
   }
   std::vector<std::byte> firmware(bytes->size());
   std::transform(bytes->begin(), bytes->end(), firmware.begin(),
@@ -125,16 +125,16 @@ Result<void> enter_boot_loader(SerialLine& line, const BootSettings& settings) {
   }
   if (!greeted) {
     return Error{
-        "The Falcon's boot loader does not answer. Check that its own power supply is plugged in, "
-        "and plug the arm into the computer itself, not into a hub."};
+        "The Falcon's boot loader does not answer. Check that its power supply is plugged in, and "
+        "plug the arm directly into the computer, not into a hub."};
   }
   if (!line.set_dtr(false) || !line.set_rate_divisor(kUploadDivisor)) return line_lost("upload");
   pause(settings.settle_ms);
   if (!line.write(kReady)) return line_lost("upload rate");
   if (!answers(line, kReady, settings.answer_timeout_ms)) {
     return Error{
-        "The Falcon's boot loader does not follow to the upload rate. Switch the arm off and on "
-        "again and retry."};
+        "The Falcon's boot loader does not answer at the upload rate. Switch the arm off and on "
+        "and retry."};
   }
   return {};
 }
@@ -157,9 +157,9 @@ Result<UploadReport> upload_firmware(SerialLine& line, std::span<const std::byte
     if (firmware_answers(line, settings)) return report;
     why = "the firmware did not answer after the upload";
   }
-  return Error{"The Falcon did not take its firmware in " + std::to_string(report.attempts) +
-               " attempts (the last time " + why +
-               "). Plug the arm into the computer itself, switch it off and on, and check that "
+  return Error{"The Falcon did not accept its firmware in " + std::to_string(report.attempts) +
+               " attempts (last error: " + why +
+               "). Plug the arm directly into the computer, switch it off and on, and check that "
                "the file is a firmware image of the Falcon."};
 }
 
@@ -169,8 +169,8 @@ Result<UploadReport> prepare(SerialLine& line, const std::filesystem::path& firm
   if (firmware_answers(line, settings)) return UploadReport{};
   if (firmware_file.empty()) {
     return Error{
-        "The Falcon has no firmware since it was switched on. Name the image that came with its "
-        "software: --firmware FILE."};
+        "The Falcon has no firmware, because it loses it when it is switched off. Pass the image "
+        "that came with its software by --firmware FILE."};
   }
   auto firmware = read_firmware(firmware_file);
   if (!firmware) return firmware.error();

@@ -21,8 +21,8 @@ inline constexpr std::size_t kPaddedReportSize = 64;
 /// A report from the arm: counters of three motor and three gimbal encoders, and a flag word.
 struct InputReport {
   std::array<std::int16_t, 6> counts{};  ///< Encoders a to f.
-  /// Bit 0: the calibration button was pressed and no preset has come since. The other bits are
-  /// unknown.
+  /// Bit 0: the calibration button was pressed and no preset has been received since. The other
+  /// bits are unknown.
   std::int16_t info = 0;
 
   friend bool operator==(const InputReport&, const InputReport&) = default;

@@ -30,7 +30,8 @@ Result<void> listen_for_board(Transport& wire, const Clock& clock) {
     std::array<std::byte, kReportCapacity> buffer{};
     const TransportRead read = wire.read_latest(buffer, clock.now_ns() + kWait_ns);
     if (read.status == TransportStatus::kLost) {
-      return Error{"The board was gone while it was listened to. Check its cable and power."};
+      return Error{
+          "The board was disconnected while its reports were checked. Check its cable and power."};
     }
     if (read.status != TransportStatus::kOk) continue;
     ++reports;
@@ -48,13 +49,14 @@ Result<void> listen_for_board(Transport& wire, const Clock& clock) {
   }
   if (reports == 0) {
     return Error{
-        "The board sends nothing by itself, as a WoodenHaptics board does. Nothing was sent to it. "
-        "Check its power; if it is an arm with other firmware, its arm file names another board."};
+        "The board sends no reports by itself, unlike a WoodenHaptics board. Nothing was sent to "
+        "it. Check its power. If the arm has other firmware, set the matching board in its arm "
+        "file."};
   }
   return Error{
-      "The board's reports are not numbered as a WoodenHaptics board's are, so it is something "
-      "else "
-      "with the same USB id. Nothing was sent to it."};
+      "The board's reports are not numbered like those of a WoodenHaptics board, so it is another "
+      "device with the same USB id. Nothing was sent to it. Unplug it, or name another device by "
+      "--device."};
 }
 
 }  // namespace thimble::driver::woody

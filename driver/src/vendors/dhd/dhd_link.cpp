@@ -62,15 +62,15 @@ class OpenArm {
     const int count = library.call.dhdGetDeviceCount();
     if (count < 1) {
       return Error{
-          "The library of Force Dimension finds no arm. Check its power and cable, and the "
-          "udev rule (thimble doctor)."};
+          "Force Dimension's library found no arm. Check the arm's power and cable, and the udev "
+          "rule (thimble doctor)."};
     }
     if (count > 1) {
-      return Error{"The library of Force Dimension finds " + std::to_string(count) +
-                   " arms, and nothing tells which is meant. Leave one plugged in."};
+      return Error{"Force Dimension's library found " + std::to_string(count) +
+                   " arms, and only one is supported. Unplug the others."};
     }
     if (library.call.drdOpenID(kId) < 0) {
-      return failure(library, "The arm cannot be opened. Close other programs that use it");
+      return failure(library, "Cannot open the arm. Close other programs that use it");
     }
     return OpenArm(library);
   }
@@ -204,14 +204,15 @@ Result<void> enable(const OpenArm& arm) {
   // Only expert mode can set the watchdog, and the arm must not stay in expert mode.
   call.dhdEnableExpertMode();
   const int watched = call.dhdSetWatchdog(kWatchdog, kId);
-  auto done_watch = step(watched, "take its watchdog's time");
+  auto done_watch = step(watched, "accept the watchdog timeout");
   call.dhdDisableExpertMode();
   if (!done_watch) return done_watch;
-  if (auto done = step(call.dhdSetGravityCompensation(kOn, kId), "carry its own weight"); !done) {
+  if (auto done = step(call.dhdSetGravityCompensation(kOn, kId), "switch on gravity compensation");
+      !done) {
     return done;
   }
-  if (auto done = step(call.dhdSetBrakes(kOff, kId), "let its brakes go"); !done) return done;
-  return step(call.dhdEnableForce(kOn, kId), "switch its forces on");
+  if (auto done = step(call.dhdSetBrakes(kOff, kId), "release its brakes"); !done) return done;
+  return step(call.dhdEnableForce(kOn, kId), "switch on its forces");
 }
 
 /// Opens the arm if no other link of this program has it. Precondition: the caller holds the
@@ -220,7 +221,7 @@ Result<OpenArm> take_arm(const Library& library) {
   if (DhdLink* const link = owner().link; link != nullptr) {
     if (!link->gone()) {
       return Error{
-          "This program has the arm of Force Dimension's library open already. Close that run "
+          "This program has already opened the arm through Force Dimension's library. End that run "
           "first."};
     }
     link->shut_down();
@@ -237,8 +238,8 @@ Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock)
   const Functions& call = arm->call();
   if (!call.drdIsInitialized(kId)) {
     return Error{
-        "The arm does not know its zero, and must move by itself to find it. Let it: thimble "
-        "calibrate --device NAME, with nobody's hand at it."};
+        "The arm is not initialised. Let go of the arm and run `thimble calibrate --device NAME`; "
+        "the arm then moves by itself to find its zero."};
   }
   const ArmTraits traits{.has_velocity = true,
                          .has_orientation = call.dhdHasWrist(kId),
@@ -257,7 +258,7 @@ Result<void> find_zero(const Library& library) {
   const Functions& call = arm->call();
   if (call.drdIsInitialized(kId)) return {};
   if (call.drdAutoInit(kId) < 0 || !call.drdIsInitialized(kId)) {
-    const Error error = failure(library, "The arm did not find its zero");
+    const Error error = failure(library, "The arm did not find its zero position");
     call.drdStop(false, kId);
     return error;
   }

@@ -7,8 +7,8 @@ namespace {
 
 Error absent() {
   return {
-      "This build knows no Inverse3: install libboost-dev and nlohmann-json3-dev, and build it "
-      "anew."};
+      "Built without Inverse3 support. Install libboost-dev and nlohmann-json3-dev, and build "
+      "again."};
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ Result<std::unique_ptr<ArmLink>> open_link(const std::string& device_id, std::ui
     return std::unique_ptr<ArmLink>(
         std::make_unique<HaplyLink>(std::move(socket).value(), std::move(arm), clock));
   }
-  return Error{"Haply's service has no Inverse3 called " + device_id + ". See `thimble devices`."};
+  return Error{"Haply's service lists no Inverse3 named " + device_id + ". See `thimble devices`."};
 }
 
 }  // namespace thimble::driver::haply

@@ -106,12 +106,13 @@ bool is_false(const json& status, const char* key) {
 /// Returns the reason why the positions of an arm are unreliable; empty if there is none.
 std::string trouble_of(const json& arm) {
   const json& status = member(arm, "status");
-  if (is_false(status, "power_supply")) return "It has no power: plug in its power supply.";
+  if (is_false(status, "power_supply")) return "The arm has no power. Plug in its power supply.";
   if (is_false(status, "calibrated")) {
-    return "It is not calibrated: calibrate it as its vendor's software asks.";
+    return "The arm is not calibrated. Calibrate it with its vendor's software.";
   }
   if (is_false(status, "ready"))
-    return "Its service says that it is not ready: wait, or see there.";
+    return "Haply's service reports that the arm is not ready. Wait, or check the arm in the "
+           "vendor's software.";
   return {};
 }
 
@@ -133,7 +134,7 @@ Result<std::vector<FoundInverse3>> read_first(std::string_view text) {
   const json message = parsed(text);
   const json& arms = member(message, "inverse3");
   if (!arms.is_array()) {
-    return Error{"What listens there does not speak as Haply's service does."};
+    return Error{"The server on that port is not Haply's service."};
   }
   std::vector<FoundInverse3> found;
   for (const json& arm : arms) {
@@ -141,17 +142,19 @@ Result<std::vector<FoundInverse3>> read_first(std::string_view text) {
     one.device_id = id_of(arm);
     if (one.device_id.empty() || one.device_id != shown(one.device_id) ||
         one.device_id.size() > 64) {
-      return Error{"Haply's service lists an arm without a name that can be used."};
+      return Error{"Haply's service lists an arm without a usable device id."};
     }
     one.trouble = trouble_of(arm);
     const json& in_use = member(member(arm, "status"), "in_use");
     if (one.trouble.empty() && in_use.is_boolean() && in_use.get<bool>()) {
       // The service adds up the forces of all programs [S], beyond any limit of ours.
-      one.trouble = "Another program uses it: end that one, for the service adds up their forces.";
+      one.trouble =
+          "Another program uses the arm. End that program, because the service adds the forces of "
+          "both.";
     }
     if (!read_arm(message, arm, one.state) && one.trouble.empty()) {
-      return Error{"Haply's service tells a state of the arm " + one.device_id +
-                   " that this version of Thimble does not understand."};
+      return Error{"Haply's service reports a state of the arm " + one.device_id +
+                   " that this version of Thimble does not support."};
     }
     const json& versions = member(member(arm, "config"), "device_info");
     if (!versions.is_null()) {

@@ -43,7 +43,9 @@ class Socket::Connection {
 
   /// Connects and waits for the first message; returns an error message, empty on success.
   std::string open(std::uint16_t port, std::chrono::nanoseconds timeout) {
-    if (ring_fd_ < 0) return "The kernel gives no event descriptor: too many files are open.";
+    if (ring_fd_ < 0)
+      return "Cannot create an event descriptor, because too many files are open. Close some of "
+             "them.";
     const auto until = std::chrono::steady_clock::now() + timeout;
     error_code failed;
     for (const char* host : {"127.0.0.1", "::1"}) {
@@ -56,7 +58,7 @@ class Socket::Connection {
       wait(until);
       if (!failed) break;
     }
-    if (failed) return "Nobody listens on port " + std::to_string(port) + " of this computer.";
+    if (failed) return "No server listens on port " + std::to_string(port) + " of this computer.";
     error_code ignored;
     stream_.next_layer().set_option(tcp::no_delay(true), ignored);
     stream_.read_message_max(kMessageMost);
@@ -64,17 +66,19 @@ class Socket::Connection {
     stream_.async_handshake(answer_, "localhost:" + std::to_string(port), "/",
                             [&failed](const error_code& code) { failed = code; });
     wait(until);
-    if (failed) return "What listens on port " + std::to_string(port) + " is no WebSocket.";
+    if (failed)
+      return "The server on port " + std::to_string(port) +
+             " does not accept WebSocket connections.";
     failed = asio::error::timed_out;
     stream_.async_read(buffer_, [&failed](const error_code& code, std::size_t) { failed = code; });
     wait(until);
-    if (failed) return "What listens on port " + std::to_string(port) + " says nothing.";
+    if (failed) return "The server on port " + std::to_string(port) + " sends no messages.";
     first_ = take_text();
     // The service has accepted the connection only now, so the kernel knows its process.
     const std::string stranger = distrust_of_peer(stream_.next_layer().native_handle());
     if (!stranger.empty()) {
-      return "What listens on port " + std::to_string(port) + " is " + stranger +
-             ", neither yours nor root's, and is not used.";
+      return "The server on port " + std::to_string(port) + " is " + stranger +
+             ". Only a service of your own user or of root is used.";
     }
     return {};
   }
@@ -148,7 +152,7 @@ class Socket::Connection {
     });
   }
 
-  /// Ends the connection soon, whatever the other side does.
+  /// Ends the connection within kFarewell, independent of the server.
   void hurry() {
     if (hurries_) return;
     hurries_ = true;

@@ -21,7 +21,7 @@ Result<Library> open(const std::vector<std::string>& files) {
        THIMBLE_FIND(hdScheduleAsynchronous), THIMBLE_FIND(hdUnschedule), THIMBLE_FIND(hdBeginFrame),
        THIMBLE_FIND(hdEndFrame), THIMBLE_FIND(hdCheckCalibration),
        THIMBLE_FIND(hdUpdateCalibration)},
-      "the library of OpenHaptics. Install OpenHaptics and its driver.");
+      "the OpenHaptics library. Install OpenHaptics and its driver.");
 #undef THIMBLE_FIND
   if (!file) return file.error();
   library.file = std::move(file).value();

@@ -71,11 +71,10 @@ class OpenDevice {
     const unsigned code = first_error(library.call);
     if (device == kNoDevice || code != 0) {
       if (device != kNoDevice) library.call.hdDisableDevice(device);
-      return failure(
-          library,
-          "The arm cannot be opened. Check its power and cable, that the vendor's set-up "
-          "names it as the default device, and that no other program uses it",
-          code);
+      return failure(library,
+                     "Cannot open the arm. Check its power and cable, select it as the default "
+                     "device in the vendor's set-up, and close other programs that use it",
+                     code);
     }
     return OpenDevice(library, device);
   }
@@ -136,8 +135,8 @@ class HdLink final : public SlotLink {
     for (int look = 0; call().hdCheckCalibration() != kCalibrated; ++look) {
       if (look == kLooksAtOpening) {
         return Error{
-            "The arm is not calibrated, so its positions are not to be relied on. "
-            "Calibrate it: thimble calibrate --device NAME."};
+            "The arm is not calibrated, so its positions are unreliable. Calibrate it: thimble "
+            "calibrate --device NAME."};
       }
       std::this_thread::sleep_for(kLook);
     }
@@ -227,7 +226,7 @@ Result<OpenDevice> take_device(const Library& library) {
   if (HdLink* const link = owner().link; link != nullptr) {
     if (!link->gone()) {
       return Error{
-          "This program has the arm of OpenHaptics' library open already. Close that run first."};
+          "This program has already opened the arm through OpenHaptics. End that run first."};
     }
     link->shut_down();
   }
@@ -244,7 +243,7 @@ Result<std::unique_ptr<ArmLink>> open_link(const Library& library, Clock& clock)
   device->call().hdGetDoublev(kNominalMaxForce, &nominal);
   if (first_error(device->call()) != 0 || !(nominal > 0)) {
     return Error{
-        "The library tells no nominal force of the arm, so it gets none. Check that its "
+        "The library reports no nominal force of the arm, so no force is sent. Check that the "
         "driver is the one for this arm."};
   }
   const ArmTraits traits{.has_velocity = true, .has_orientation = true};
@@ -263,10 +262,10 @@ Result<std::string> how_to_calibrate(const Library& library) {
   if ((asks & kStyleInkwell) != 0) return std::string("Put the stylus into its inkwell.");
   if ((asks & kStyleAuto) != 0) {
     return std::string(
-        "Move the stylus slowly through its whole workspace after you pressed Enter.");
+        "After you press Enter, move the stylus slowly through its whole workspace.");
   }
   return std::string(
-      "Hold the arm in its reset pose: all limbs at right angles, as its manual shows.");
+      "Hold the arm in its reset pose, with all links at right angles, as its manual shows.");
 }
 
 Result<void> calibrate(const Library& library) {

@@ -51,7 +51,7 @@ driver::Error unreadable(const std::string& kind, const std::string& reason) {
   std::string capitals = kind;
   std::transform(capitals.begin(), capitals.end(), capitals.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return {"the " + capitals + " file could not be read (" + reason + ")."};
+  return {"this is no " + capitals + " file that can be read (" + reason + ")."};
 }
 
 driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::string& kind,
@@ -64,7 +64,7 @@ driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::st
   const auto done = driver::run_apart(work, limits);
   if (!done) return unreadable(kind, "it " + done.error().message);
   driver::ApartReader in(done->bytes());
-  const driver::Error broken = unreadable(kind, "its reader crashed");
+  const driver::Error broken = unreadable(kind, "it crashes its reader");
   std::string error, notes;
   double unit = 0;
   TriangleMesh mesh;

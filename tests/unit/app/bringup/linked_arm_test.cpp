@@ -123,7 +123,7 @@ TEST_F(LinkedArmTest, TheDoctorSaysWhatServesItOrWhatIsMissing) {
   EXPECT_EQ(said("Inverse3 049D").health, Health::kGood);
   serve(HaplyGreeting::kUncalibrated);
   EXPECT_EQ(said("Inverse3 049D").health, Health::kProblem);
-  EXPECT_TRUE(holds(said("Inverse3 049D").mend, "calibrate it"));
+  EXPECT_TRUE(holds(said("Inverse3 049D").mend, "Calibrate it"));
 }
 
 TEST_F(LinkedArmTest, FileOmitsWhatTheVendorSoftwareKnows) {

@@ -213,7 +213,7 @@ TEST_F(WaitForStartPose, EndsWhenItIsToldToAndWhenTheArmGoes) {
   };
   const auto lost = wait();
   ASSERT_FALSE(lost);
-  EXPECT_TRUE(has(lost.error().message, "gone from the wire"));
+  EXPECT_TRUE(has(lost.error().message, "disconnected"));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 
 class FalconGeometry : public ::testing::Test {
  protected:
-  /// Draws from the whole ball, with every fourth point on its skin.
+  /// Draws points from the whole sphere, every fourth on its surface.
   Eigen::Vector3d anywhere() {
     const double radius = random_.bits() % 4 == 0 ? 1 : std::cbrt(random_.uniform(0, 1));
     return arm_.p_BM + kWorkspaceRadius * radius * random_.direction();
@@ -85,7 +85,7 @@ TEST_F(FalconGeometry, HasTheJacobianOfCentralDifferences) {
   std::printf("worst relative difference %.3g\n", worst);
 }
 
-TEST_F(FalconGeometry, DoesTheSameWorkAtItsLegsAndAtItsTip) {
+TEST_F(FalconGeometry, LegAndTipWorkAreEqual) {
   // f . v at the tip equals tau . qdot at the legs for any force and any motion.
   double worst = 0;
   for (int i = 0; i < 5000; ++i) {
@@ -97,8 +97,8 @@ TEST_F(FalconGeometry, DoesTheSameWorkAtItsLegsAndAtItsTip) {
     const Eigen::Vector3d f = 8 * random_.direction();
     const Eigen::Vector3d qdot = random_.in_box(3);
     const Eigen::Vector3d v = J * qdot;
-    // How the legs turn along v, from the closed form of the inverse and not from the Jacobian:
-    // differences of fourth order.
+    // Rates of the legs for a motion along v, by differences of fourth order of the closed-form
+    // inverse; independent of the Jacobian.
     constexpr double kStep = 4e-5;  // m
     const auto q_at = [&](double times) {
       return *arm_.inverse(p + v * (times * kStep / v.norm()));
@@ -112,7 +112,7 @@ TEST_F(FalconGeometry, DoesTheSameWorkAtItsLegsAndAtItsTip) {
   EXPECT_LT(worst, 1e-9);
 }
 
-TEST_F(FalconGeometry, ExertsTheAskedForceEverywhere) {
+TEST_F(FalconGeometry, ExertsTheRequestedForceEverywhere) {
   const JointModel<DeltaArm> model = falcon_model();
   const FalconArm arm(model);
   double worst = 0, worst_on_wire = 0, quantum = 0;
@@ -132,8 +132,8 @@ TEST_F(FalconGeometry, ExertsTheAskedForceEverywhere) {
     const MotorCurrents currents(gate.pass(f, {0, 0, 0}, 1), Eigen::Matrix3d::Identity(), J,
                                  model.drives);
     ASSERT_EQ(currents.scale(), 1) << p.transpose();
-    // What the legs exert, from the motor values and the geometry's closed form: the inverse's
-    // central differences are the inverse Jacobian, so f = (dq/dp)^T tau.
+    // The force of the legs, from the motor values and the closed-form geometry: central
+    // differences of the inverse give the inverse Jacobian, so f = (dq/dp)^T tau.
     constexpr double kStep = 1e-5;  // m
     Eigen::Matrix3d dq_dp;
     for (int k = 0; k < 3; ++k) {
@@ -180,7 +180,7 @@ TEST_F(FalconGeometry, HasTheTipResolutionOfItsGeometry) {
   EXPECT_LT(most, 0.058e-3);
 }
 
-TEST_F(FalconGeometry, GivesAPoseThatClosesOrNoneAtAllForAnyAngles) {
+TEST_F(FalconGeometry, PoseIsConsistentOrEmptyForAnyAngles) {
   int none = 0;
   for (int i = 0; i < 5000; ++i) {
     const Eigen::Vector3d q = random_.in_box(M_PI);

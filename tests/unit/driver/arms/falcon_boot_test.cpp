@@ -39,7 +39,7 @@ TEST_F(FalconBoot, TakesAnEchoInPiecesOfAnySize) {
   }
 }
 
-TEST_F(FalconBoot, GreetsUntilTheLoaderAnswersAndNoLonger) {
+TEST_F(FalconBoot, GreetsOnlyUntilTheLoaderAnswers) {
   line_.greetings_unheard = 6;
   EXPECT_TRUE(upload_firmware(line_, line_.image, quick_));
   line_.running = false;
@@ -49,14 +49,14 @@ TEST_F(FalconBoot, GreetsUntilTheLoaderAnswersAndNoLonger) {
   EXPECT_NE(failed.error().message.find("power supply"), std::string::npos);
 }
 
-TEST_F(FalconBoot, BeginsAnewAfterAWrongOrAMissingEcho) {
+TEST_F(FalconBoot, RestartsAfterAWrongOrMissingEcho) {
   line_.echoes_wrong = 1;
   line_.echoes_missing = 1;
   const auto report = upload_firmware(line_, line_.image, quick_);
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->attempts, 3);
   EXPECT_EQ(report->resumed_at, 2 * kBlockSize);
-  EXPECT_EQ(line_.resets, 3);  // never continues in a loader that may hold a wrong byte
+  EXPECT_EQ(line_.resets, 3);  // never continues with a loader that may have received a wrong byte
 }
 
 TEST_F(FalconBoot, GivesUpWithAReasonWhenEchoesStayWrong) {
@@ -101,14 +101,14 @@ TEST_F(FalconBoot, AsksForTheFirmwareFileAndReadsIt) {
   EXPECT_FALSE(read_firmware(file));
 }
 
-TEST_F(FalconBoot, SaysSoWhenTheConverterIsGone) {
+TEST_F(FalconBoot, ReportsAMissingConverter) {
   line_.gone = true;
   EXPECT_FALSE(upload_firmware(line_, line_.image, quick_));
   EXPECT_FALSE(enter_run_mode(line_));
   EXPECT_FALSE(home_once(line_, 0, quick_).answered);
 }
 
-TEST_F(FalconBoot, HomesLegByLegWithZeroForceAndALightThatTells) {
+TEST_F(FalconBoot, HomesLegByLegWithZeroForceAndALight) {
   line_.running = true;
   ASSERT_TRUE(enter_run_mode(line_));
   std::uint8_t homed = 0;
@@ -143,7 +143,7 @@ TEST_F(FalconBoot, FindsTheBeginningOfAnAnswerBehindStrayBytes) {
   EXPECT_FALSE(home_once(line_, 0, quick_).answered);
 }
 
-TEST_F(FalconBoot, TakesAnImageOfJust64KBAndNoByteMore) {
+TEST_F(FalconBoot, AcceptsImagesOfUpTo64KB) {
   const auto file = support::scratch_folder() / "image_64k.bin";
   std::ofstream(file, std::ios::binary) << std::string(65'536, 'x');
   const auto largest = read_firmware(file);
@@ -152,7 +152,7 @@ TEST_F(FalconBoot, TakesAnImageOfJust64KBAndNoByteMore) {
   std::ofstream(file, std::ios::binary) << std::string(65'537, 'x');
   const auto beyond = read_firmware(file);
   ASSERT_FALSE(beyond);
-  EXPECT_NE(beyond.error().message.find("more than 64 kB"), std::string::npos);
+  EXPECT_NE(beyond.error().message.find("larger than 64 kB"), std::string::npos);
 }
 
 }  // namespace

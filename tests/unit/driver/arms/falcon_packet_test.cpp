@@ -13,7 +13,7 @@ std::span<const std::byte> bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::byte*>(text.data()), text.size()};
 }
 
-TEST(FalconPacket, ComesBackUnchangedFromTheWireBothWays) {
+TEST(FalconPacket, RoundTripsInBothDirections) {
   support::Random random(51);
   for (int i = 0; i < 10'000; ++i) {
     ArmPacket arm;
@@ -40,7 +40,7 @@ TEST(FalconPacket, ReadsThePublishedExamples) {
   EXPECT_EQ(packet->counts[0], -1447);
 }
 
-TEST(FalconPacket, TellsButtonsAndHomedLegsApart) {
+TEST(FalconPacket, DistinguishesButtonsAndHomedLegs) {
   auto bytes = encode_arm_packet({.counts = {}, .buttons = 0x9, .homed = 0x5, .unknown_14 = 0});
   EXPECT_EQ(std::to_integer<int>(bytes[13]), 0x41 + 0x59);
   EXPECT_EQ(decode_arm_packet(bytes)->buttons, 0x9);

@@ -12,7 +12,7 @@
 namespace thimble::driver::hfab {
 namespace {
 
-TEST(HfabArm, StandsAtHomeWhenItsCountersAreZero) {
+TEST(HfabArm, ZeroCountsAreTheHomePose) {
   const HfabArm arm(support::vintage_model());
   const ArmPose pose = arm.pose({});
   EXPECT_LT((pose.q - support::vintage_home()).norm(), 1e-15);
@@ -74,7 +74,7 @@ TEST(HfabArm, ReadsFractionsOfCountsWithoutASign) {
 }
 
 TEST(HfabArm, RoundsCurrentsAsTheLibraryDoes) {
-  // whole_mA has no call; halves go away from zero, and what is just below stays.
+  // whole_mA rounds halves away from zero; values just below a half are rounded down.
   EXPECT_EQ(whole_mA(MotorCurrents())[0], 0);
   support::Random random(23);
   for (int i = 0; i < 100'000; ++i) {
@@ -88,7 +88,7 @@ TEST(HfabArm, RoundsCurrentsAsTheLibraryDoes) {
   }
 }
 
-TEST(HfabArm, LeavesTheReadingAloneWhenItRejectsAReport) {
+TEST(HfabArm, RejectedReportLeavesTheReadingUnchanged) {
   const HfabArm arm(support::vintage_model());
   ArmReading reading{.counts = {1, 2, 3}, .auxiliary = {}, .buttons = 1};
   const std::array<std::byte, 13> torn{};
@@ -97,9 +97,9 @@ TEST(HfabArm, LeavesTheReadingAloneWhenItRejectsAReport) {
   EXPECT_EQ(reading.buttons, 1);
 }
 
-TEST(HfabArm, SendsNothingThatDidNotPassTheGate) {
-  // The one exit to the motors: neither a plain force nor plain currents can be encoded, and only
-  // SafetyGate can make a gated force that is not zero.
+TEST(HfabArm, SendsOnlyForcesFromTheGate) {
+  // The only path to the motors: neither a plain force nor plain currents can be encoded, and only
+  // SafetyGate can create a gated force that is not zero.
   static_assert(!std::is_convertible_v<Eigen::Vector3d, MotorCurrents>);
   static_assert(!std::is_constructible_v<MotorCurrents, Eigen::Vector3d>);
   static_assert(!std::is_constructible_v<GatedForce, Eigen::Vector3d>);

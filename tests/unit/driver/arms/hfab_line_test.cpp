@@ -17,12 +17,12 @@ std::span<const std::byte> bytes_of(std::string_view text) {
 }
 
 std::int32_t any_number(support::Random& random) {
-  // Of every length, not almost always ten digits.
+  // Numbers of every length; uniform ones would almost always have ten digits.
   return static_cast<std::int32_t>(static_cast<std::int64_t>(random.bits()) >>
                                    (32 + random.bits() % 32));
 }
 
-TEST(HfabLine, ComesBackUnchangedFromTheWireBothWays) {
+TEST(HfabLine, RoundTripsInBothDirections) {
   support::Random random(41);
   std::array<std::byte, kLineCapacity> buffer{};
   for (int i = 0; i < 10'000; ++i) {
@@ -45,7 +45,7 @@ TEST(HfabLine, HasRoomForTheLongestNumbers) {
   EXPECT_EQ(decode_arm_line(buffer), line);
 }
 
-TEST(HfabLine, LooksLikeThePublishedProtocol) {
+TEST(HfabLine, MatchesThePublishedProtocol) {
   std::array<std::byte, kLineCapacity> buffer{};
   const std::size_t size = encode_host_line({.current_mA = {12, -345, 6000}}, buffer);
   EXPECT_EQ(std::string_view(reinterpret_cast<const char*>(buffer.data()), size),
@@ -57,7 +57,7 @@ TEST(HfabLine, LooksLikeThePublishedProtocol) {
   EXPECT_EQ(line->error, kErrorParse);
 }
 
-TEST(HfabLine, RejectsWhatIsTornOrNotExactlyTheForm) {
+TEST(HfabLine, RejectsTornAndMalformedLines) {
   for (const char* text :
        {"", "[", "]", "[]", "[1,2,3", "1,2,3]", "[1,2]", "[1,2,3,4]", "[1,,3]", "[1,2,3]x",
         "[1, 2,3]", "[+1,2,3]", "[1,2,3.5]", "[0x1,2,3]", "[2147483648,0,0]", "[1,2,3][1,2,3]",
@@ -65,11 +65,11 @@ TEST(HfabLine, RejectsWhatIsTornOrNotExactlyTheForm) {
     EXPECT_FALSE(decode_host_line(bytes_of(text))) << text;
   }
   EXPECT_TRUE(decode_host_line(bytes_of("[1,2,3]")));
-  // What the published host library sends: padded with zeros to 16 bytes.
+  // A line of the published host library, padded with zeros to 16 bytes.
   EXPECT_TRUE(decode_host_line(bytes_of(std::string_view("[0,0,0]\n\0\0\0\0\0\0\0\0", 16))));
 }
 
-TEST(HfabLine, RejectsEveryBeginningOfALine) {
+TEST(HfabLine, RejectsEveryPrefixOfALine) {
   const std::string_view whole = "[3,1,-2,3,4,-5,6,1024]";
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_FALSE(decode_arm_line(bytes_of(whole.substr(0, size)))) << size;

@@ -12,7 +12,7 @@
 namespace thimble::driver::hfab {
 namespace {
 
-/// Compares the Jacobian with central differences around a pose; returns the worst difference
+/// Compares the Jacobian with central differences around a pose; returns the largest difference
 /// relative to the Jacobian.
 template <class Geometry>
 double worst_jacobian_error(const Geometry& geometry, const Eigen::Vector3d& q) {
@@ -29,7 +29,7 @@ double worst_jacobian_error(const Geometry& geometry, const Eigen::Vector3d& q) 
   return (J - differences).norm() / J.norm();
 }
 
-/// Draws joint angles at which the bars close, at least 8 degrees from where they stretch.
+/// Draws joint angles at which the linkage closes, at least 8 degrees from its stretched pose.
 Eigen::Vector3d polhem_angles(support::Random& random) {
   const LinkageArm arm = polhem_model().geometry;
   for (;;) {
@@ -67,8 +67,8 @@ TEST(HfabModels, PolhemInvertsEveryReachablePlace) {
     Eigen::Matrix3d J;
     arm.forward(*q, p, J);
     ASSERT_LT((p - p_BT).norm(), 1e-12);
-    // The same way of closing the bars everywhere: a small step of the tip is one of the angles,
-    // as the Jacobian says, but at the very edge of reach.
+    // The same assembly mode everywhere: a small step of the tip is a small step of the angles, as
+    // the Jacobian predicts, except at the very edge of reach.
     const Eigen::Vector3d step(1e-6, -1e-6, 1e-6);
     const Eigen::Vector3d turn = J.inverse() * step;
     const auto next = arm.inverse(p_BT + step);
@@ -109,7 +109,7 @@ TEST(HfabModels, PolhemClosesItsLinkage) {
   }
 }
 
-TEST(HfabModels, PolhemStandsAtHomeWhereThePublishedLibraryPutsIt) {
+TEST(HfabModels, PolhemHomeMatchesThePublishedLibrary) {
   // hfab_polhem.h evaluated at the home counts of hfab_api.cpp: yaw 2.102 rad, reach 35.80 mm,
   // height 69.55 mm.
   Eigen::Vector3d p;
@@ -121,7 +121,7 @@ TEST(HfabModels, PolhemStandsAtHomeWhereThePublishedLibraryPutsIt) {
   EXPECT_NEAR(std::atan2(p.y(), p.x()), 2.102, 1e-3);
 }
 
-TEST(HfabModels, PolhemHasNoPoseWhereItsBarsCannotMeet) {
+TEST(HfabModels, PolhemHasNoPoseIfItsBarsCannotMeet) {
   Eigen::Vector3d p;
   Eigen::Matrix3d J;
   polhem_model().geometry.forward({0, 0, std::numbers::pi}, p, J);
@@ -141,8 +141,8 @@ TEST(HfabModels, WoodenHapticsHasItsPublishedHomeAndResolution) {
   EXPECT_NEAR(0.245 * arm.model().step(2) * 1e3, 0.064, 0.0005);
 }
 
-// A board of the mbed generation, as both published clients of its 8-byte reports read and drive
-// it: CHAI3D's CWoodenDevice.cpp (encoder values {-a, b, c}, gear ratios {+16, -12, +12}, C from a
+// A board of the mbed generation, with the signs of both published clients of its 8-byte reports:
+// CHAI3D's CWoodenDevice.cpp (encoder values {-a, b, c}, gear ratios {+16, -12, +12}, C from a
 // right angle downwards, motor torques {+A, -B, -C}) and haptikfabrikenapi (all encoders reversed,
 // motor A positive).
 TEST(HfabModels, MbedEncoderATurnsWoodenHapticsLeft) {
@@ -191,7 +191,8 @@ TEST(HfabModels, RejectAnAnswerWithOldCounts) {
   }
   EXPECT_EQ(reading.counts[0], 0);
   const std::size_t size = encode_arm_line({.model = 3, .counts = {9}, .error = 2}, bytes);
-  EXPECT_TRUE(LineWire::decode(std::span(bytes).first(size), reading));  // a gimbal sensor only
+  EXPECT_TRUE(
+      LineWire::decode(std::span(bytes).first(size), reading));  // only a gimbal sensor differs
   EXPECT_EQ(reading.counts[0], 9);
 }
 

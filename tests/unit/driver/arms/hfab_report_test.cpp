@@ -13,7 +13,7 @@ std::int16_t any_int16(support::Random& random) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(random.bits() >> 48));
 }
 
-TEST(HfabReport, ComesBackUnchangedFromTheWireBothWays) {
+TEST(HfabReport, RoundTripsInBothDirections) {
   support::Random random(1);
   for (int i = 0; i < 10'000; ++i) {
     InputReport input;
@@ -50,7 +50,7 @@ TEST(HfabReport, AcceptsOnly14And64Bytes) {
   }
 }
 
-TEST(HfabReport, DecodesAnyBytesOfTheRightLengthToWhatTheyEncode) {
+TEST(HfabReport, AnyBytesOfTheRightLengthRoundTrip) {
   support::Random random(3);
   for (int i = 0; i < 100'000; ++i) {
     std::array<std::byte, kReportSize> bytes;

@@ -58,8 +58,8 @@ std::string refusal(const Board::Says& says, std::size_t size = kReportSize) {
 
 TEST(WoodyProof, AcceptsNumberedReportsWithoutSending) {
   EXPECT_EQ(refusal([](int frame) { return numbered(frame); }), "");
-  EXPECT_EQ(refusal([](int frame) { return numbered(65'530 + frame); }), "");  // over the top
-  // Half a second of silence after power-on, and the leftovers of an earlier time.
+  EXPECT_EQ(refusal([](int frame) { return numbered(65'530 + frame); }), "");  // the number wraps
+  // Half a second of silence after power-on, and reports left over from an earlier time.
   EXPECT_EQ(refusal([](int frame) -> std::optional<InputReport> {
               if (frame < 500) return {};
               return numbered(frame == 500 ? 7 : 40'000 + frame);
@@ -67,7 +67,7 @@ TEST(WoodyProof, AcceptsNumberedReportsWithoutSending) {
             "");
 }
 
-TEST(WoodyProof, CountsWhatWasSkippedAsSent) {
+TEST(WoodyProof, SkippedReportsAdvanceTheExpectedNumber) {
   VirtualClock clock;
   Board board(clock, [](int frame) { return numbered(4 * frame); });
   board.skipped = 3;
@@ -75,9 +75,9 @@ TEST(WoodyProof, CountsWhatWasSkippedAsSent) {
   EXPECT_EQ(board.written, 0);
 }
 
-TEST(WoodyProof, RefusesWhatIsNoSuchBoardAndSendsItNothing) {
+TEST(WoodyProof, RefusesOtherBoardsAndSendsThemNothing) {
   const auto silent = refusal([](int) { return std::nullopt; });
-  EXPECT_NE(silent.find("sends nothing by itself"), std::string::npos) << silent;
+  EXPECT_NE(silent.find("sends no reports by itself"), std::string::npos) << silent;
   support::Random random(8);
   const auto noise =
       refusal([&](int) { return numbered(static_cast<int>(random.bits() % 65'536)); });
@@ -85,11 +85,11 @@ TEST(WoodyProof, RefusesWhatIsNoSuchBoardAndSendsItNothing) {
   EXPECT_NE(refusal([](int) { return numbered(5); }), "");
   EXPECT_NE(refusal([](int frame) { return numbered(2 * frame); }), "");
   EXPECT_NE(refusal([](int frame) { return numbered(-frame); }), "");
-  EXPECT_NE(refusal([](int frame) { return numbered(frame % 20); }), "");  // 19 right steps
+  EXPECT_NE(refusal([](int frame) { return numbered(frame % 20); }), "");  // only 19 correct steps
   EXPECT_NE(refusal([](int frame) { return numbered(frame); }, 7), "");
 }
 
-TEST(WoodyProof, SaysThatTheBoardIsGone) {
+TEST(WoodyProof, ReportsADisconnectedBoard) {
   VirtualClock clock;
   Board board(clock, [](int frame) { return numbered(frame); });
   board.lost = true;

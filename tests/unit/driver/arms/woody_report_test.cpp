@@ -8,7 +8,7 @@
 namespace thimble::driver::woody {
 namespace {
 
-TEST(WoodyReport, ComesBackUnchangedFromTheWireBothWays) {
+TEST(WoodyReport, RoundTripsInBothDirections) {
   support::Random random(31);
   for (int i = 0; i < 10'000; ++i) {
     InputReport input;
@@ -39,7 +39,7 @@ TEST(WoodyReport, AcceptsOnly8Bytes) {
   }
 }
 
-TEST(WoodyWire, TellsCountsAndNumberAndNothingThatTheArmHasNot) {
+TEST(WoodyWire, ReadsCountsAndNumberOnly) {
   const auto bytes = encode_input({.counts = {11, -12, 13}, .counter = 14});
   ArmReading reading;
   reading.auxiliary = {7, 8, 9};

@@ -1,5 +1,5 @@
-// What the energy stage takes away and what it leaves alone: forces of storages that a law names,
-// forces of programs, and energy that nothing explains.
+// Forces that the energy stage lowers and forces that it leaves unchanged: forces of storages that
+// a law names, forces of programs, and unexplained energy.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using support::ExplainedRig;
 
 constexpr double kTick = ExplainedRig::kTick;
 
-/// A spring to the origin, N/m, as a field that names its energy.
+/// A spring to the origin, N/m, as a field that reports its energy.
 ForceCommand spring(double stiffness, const Vector3d& p_W) {
   ForceCommand command;
   command.f_T_W = -stiffness * p_W;
@@ -30,7 +30,7 @@ ForceCommand spring(double stiffness, const Vector3d& p_W) {
   return command;
 }
 
-/// A weight, N, with its energy of height.
+/// A weight, N, with its potential energy.
 ForceCommand weight(const Vector3d& f_W, const Vector3d& p_W) {
   ForceCommand command;
   command.f_T_W = f_W;
@@ -38,7 +38,7 @@ ForceCommand weight(const Vector3d& f_W, const Vector3d& p_W) {
   return command;
 }
 
-/// A path that never ends: random accelerations, kept in a ball of 60 mm and below 0.5 m/s.
+/// An endless path: random accelerations, within a sphere of 60 mm and below 0.5 m/s.
 class RandomPath {
  public:
   explicit RandomPath(std::uint64_t seed) : random_(seed) {}
@@ -73,7 +73,7 @@ TEST(ExplainedEnergy, AWeightPassesOnAMillionRandomTicks) {
 }
 
 TEST(ExplainedEnergy, AFieldPassesOnAMillionRandomTicks) {
-  // The stiffest that the damping of arm and hand pays for: K (T / 2 + T) = b.
+  // The largest stiffness for which the damping of arm and hand pays: K (T / 2 + T) = b.
   const double stiffness = 0.99 * explained_stage().dissipation / (1.5 * kTick);
   ExplainedRig rig(explained_limits(), explained_stage());
   RandomPath path(support::seed_of(2));
@@ -87,8 +87,8 @@ TEST(ExplainedEnergy, AFieldPassesOnAMillionRandomTicks) {
   EXPECT_GT(rig.gate().energy(), -1e-12);
 }
 
-TEST(ExplainedEnergy, AStifferFieldIsDampedAsMuchAsItGives) {
-  // The guard of the test above.
+TEST(ExplainedEnergy, StifferFieldIsDampedByItsEnergyGain) {
+  // Shows that the test above can fail.
   ExplainedRig rig(explained_limits(), explained_stage());
   rig.open({0, 0, 0});
   int k = 0;
@@ -108,7 +108,7 @@ TEST(ExplainedEnergy, ClosedLoopsOfAWeightLoseNothing) {
   rig.open({0.03, 0, 0});
   const Vector3d f_W{0.5, -1, -1.5};
   const double begin = rig.work();
-  for (int k = 0; k <= 600'000; ++k) {  // ten minutes, a loop in two seconds
+  for (int k = 0; k <= 600'000; ++k) {  // ten minutes, one loop in two seconds
     const double angle = std::numbers::pi * k * kTick;
     const Vector3d p_W{0.03 * std::cos(angle), 0.02 * std::sin(angle), 0.02 * std::sin(2 * angle)};
     ASSERT_EQ(rig.tick(p_W, weight(f_W, p_W)), f_W);
@@ -116,8 +116,8 @@ TEST(ExplainedEnergy, ClosedLoopsOfAWeightLoseNothing) {
   EXPECT_NEAR(rig.work(), begin, 1e-3);
 }
 
-/// Leads the tip round a force that pushes it along wherever it goes: no potential has it. Returns
-/// the work that the hand got beyond what the damping took, J.
+/// Leads the tip around in a circular force field, which has no potential. Returns the work (J) on
+/// the hand in excess of the dissipation by damping.
 double swirled(double stored_slope) {
   ExplainedRig rig(explained_limits(), explained_stage());
   rig.open({0.02, 0, 0});
@@ -132,28 +132,28 @@ double swirled(double stored_slope) {
   return rig.work() - rig.dissipated();
 }
 
-TEST(ExplainedEnergy, WhatNoStorageExplainsIsBounded) {
+TEST(ExplainedEnergy, UnexplainedEnergyIsBounded) {
   const EnergyGuardSettings stage = explained_stage();
   const double tick = 1.5 * 0.13 * 2 * kTick;  // and the delay
   EXPECT_LE(swirled(0), stage.allowance + 2 * stage.onset + tick);
-  // A storage that rises by 20 mJ in each of 20 rounds, from elsewhere, explains no more than that.
+  // A storage that gains 20 mJ from another source in each of 20 rounds explains only this energy.
   EXPECT_LE(swirled(0.5), 20 * 0.02 + stage.reservoir + stage.allowance + 2 * stage.onset + tick);
 }
 
-TEST(ExplainedEnergy, AStorageThatFallsPaysForTheWorkOfAnotherHand) {
+TEST(ExplainedEnergy, FallingStoragePaysForWorkOnAnotherHand) {
   PassivityObserver observer(explained_stage());
-  // Another hand lifts a body: nothing of it is this hand's debt.
+  // Another hand lifts a body: this adds no debt to this hand.
   observer.book({.stored_change = 0.5});
   EXPECT_EQ(observer.energy(), 0);
-  // The body comes down on this hand.
+  // The body falls onto this hand.
   observer.book({.work = 0.5, .stored_change = -0.5});
   EXPECT_NEAR(observer.energy(), 0, 1e-15);
-  // And without a storage the same work is a debt.
+  // Without a storage, the same work is a debt.
   observer.book({.work = 0.5});
   EXPECT_NEAR(observer.energy(), -0.5, 1e-15);
 }
 
-TEST(ExplainedEnergy, AHandPaysForWhatItPutsIntoAStorage) {
+TEST(ExplainedEnergy, HandPaysForEnergyThatItStores) {
   PassivityObserver observer(explained_stage());
   observer.book({.work = -0.01, .stored_change = 0.008});
   EXPECT_NEAR(observer.energy(), 0.002, 1e-15);
@@ -175,7 +175,7 @@ TEST(ProgramForce, AConstantForcePassesForAnyTime) {
   const Vector3d f_W{0, 0, 3};
   int changed = 0;
   for (int k = 0; k < 600'000; ++k) {
-    // The hand goes with it and back, over the whole of a workspace.
+    // The hand moves with the force and back, across the whole workspace.
     const Vector3d p_W{0, 0, 0.1 * std::sin(std::numbers::pi * k * kTick)};
     changed += rig.tick(p_W, asked_by_program(f_W)) == f_W ? 0 : 1;
   }
@@ -187,7 +187,7 @@ TEST(ProgramForce, AVibrationPassesAtEachFrequency) {
     for (const double amplitude : {0.2, 1.05, 2.0}) {
       ExplainedRig rig(explained_limits(), explained_stage());
       rig.open({0, 0, 0});
-      // A held arm of 0.1 kg answers: x'' = (f - 3 v - 300 x) / m.
+      // A held arm of 0.1 kg responds: x'' = (f - 3 v - 300 x) / m.
       double x = 0, v = 0, worst = 0;
       for (int k = 0; k < 5000; ++k) {
         const double f = amplitude * std::sin(2 * std::numbers::pi * frequency * k * kTick);
@@ -204,7 +204,7 @@ TEST(ProgramForce, AVibrationPassesAtEachFrequency) {
 }
 
 TEST(ProgramForce, LeavesTheSceneItsEnergyStage) {
-  // A scene's swirl is damped and fades beside a program's constant force, which stays.
+  // The circular field of a scene is damped and fades; the constant force of a program remains.
   ExplainedRig rig(explained_limits(), explained_stage());
   rig.open({0.02, 0, 0});
   Vector3d sent_W{0, 0, 0};
@@ -219,8 +219,8 @@ TEST(ProgramForce, LeavesTheSceneItsEnergyStage) {
   EXPECT_LT(std::hypot(sent_W.x(), sent_W.y()), 0.3);
 }
 
-TEST(PowerLimit, LowersAForceThatPushesOnAndOn) {
-  // A program that pushes along the motion, whatever it is: 3 N at 0.6 m/s are 1.8 W.
+TEST(PowerLimit, LowersAForceThatPushesContinuously) {
+  // A program that always pushes in the direction of motion: 3 N at 0.6 m/s are 1.8 W.
   ExplainedRig rig(explained_limits(), explained_stage());
   rig.open({0.04, 0, 0});
   double last = 0;
@@ -237,7 +237,7 @@ TEST(PowerLimit, LowersAForceThatPushesOnAndOn) {
   EXPECT_GT(0.6 * last, 0.9 * limits.power_max);
 }
 
-TEST(PowerLimit, IsNoneWhereItIsNotNamed) {
+TEST(PowerLimit, IsOffUnlessSet) {
   GateLimits limits = explained_limits();
   limits.power_max = 0;
   SafetyGate gate(limits);
@@ -247,7 +247,7 @@ TEST(PowerLimit, IsNoneWhereItIsNotNamed) {
   EXPECT_EQ(gate.counters().power_limited, 0u);
 }
 
-TEST(PowerLimit, TakesNoWorkThatIsNotANumber) {
+TEST(PowerLimit, IgnoresWorkThatIsNotFinite) {
   SafetyGate gate(explained_limits());
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) gate.book_power(bad, kTick);
   gate.book_power(1, std::nan(""));

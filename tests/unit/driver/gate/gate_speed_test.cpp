@@ -1,4 +1,4 @@
-// The gate's limit of speed does not depend on the filter of the velocity that laws get.
+// The speed limit of the gate does not depend on the filter of the velocity that laws get.
 #include <gtest/gtest.h>
 
 #include "support/moved_arm.h"
@@ -9,10 +9,10 @@ namespace {
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
 
-/// What became of a tip that gains speed.
+/// Result of a run with an accelerating tip.
 struct Outcome {
   Fault fault = Fault::kNone;
-  double speed = 0;  ///< m/s, when the force went off or at the end
+  double speed = 0;  ///< Speed when the force was switched off, or at the end, m/s.
 };
 
 /// Accelerates the tip to 6 m/s within 0.3 s, its velocity filtered at `corner`, Hz.
@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(Corners, GateSpeedTest,
                          ::testing::Values(1e-6, 0.01, 1.0, 20.0, 99.0, 100.0, 500.0, 0.0));
 
 TEST(GateSpeedOfVendorArms, SlowUserFilterDoesNotHideSpeed) {
-  // An arm that says of itself that it stands still.
+  // An arm that reports zero velocity.
   class StillArm final : public ArmLink {
    public:
     explicit StillArm(support::Moved& moved) noexcept : arm_(moved) {}

@@ -1,5 +1,5 @@
-// A gate counts on the time of a tick: how fast a force may rise and how far the soft start has
-// come follow from it. A time that cannot be must switch the force off, and no limit.
+// The gate uses the time of a tick: the rise limit and the soft start depend on it. An invalid time
+// must switch the force off; it must not disable a limit.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 constexpr double kPeriod = 1e-3;
 const Eigen::Vector3d kStill{0, 0, 0};
 
-TEST(GateTime, LatchesZeroForceOnATimeThatStepsBackOrIsNoNumber) {
+TEST(GateTime, LatchesZeroForceOnAnInvalidTime) {
   for (const double bad : {-1.0, -1e-2, -1e-9, -5e-324, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     SafetyGate gate = support::open_gate();
     EXPECT_EQ(gate.pass({4, 0, 0}, kStill, bad).f_T_W(), Eigen::Vector3d(0, 0, 0)) << bad;
@@ -40,7 +40,7 @@ TEST(GateTime, LatchesZeroForceWithAnEnergyStageToo) {
   }
 }
 
-TEST(GateTime, TakesATickOfNoLengthForOneInWhichNothingMayRise) {
+TEST(GateTime, ForceDoesNotRiseInATickOfZeroLength) {
   SafetyGate gate = support::open_gate();
   EXPECT_EQ(gate.pass({1, 0, 0}, kStill, kPeriod).f_T_W().x(), 1);
   EXPECT_EQ(gate.pass({2, 0, 0}, kStill, 0).f_T_W().x(), 1);

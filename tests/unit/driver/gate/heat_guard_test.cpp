@@ -27,7 +27,7 @@ HeatGuard guard(const HeatSettings& settings = kSettings) {
   return {settings, drives(), kLongestHold};
 }
 
-TEST(HeatGuard, FollowsTheClosedFormWhateverTheStep) {
+TEST(HeatGuard, MatchesTheClosedFormForAnyStep) {
   const std::array<std::int16_t, 3> mA{500, -700, 600};
   support::Random random(1);
   for (const bool jitter : {false, true}) {
@@ -46,7 +46,8 @@ TEST(HeatGuard, FollowsTheClosedFormWhateverTheStep) {
     heat.sent({}, false);
     const double before = heat.heat()[0];
     heat.advance(60);
-    EXPECT_NEAR(heat.heat()[0], before * std::exp(-1), 1e-12) << "it cools by the same constant";
+    EXPECT_NEAR(heat.heat()[0], before * std::exp(-1), 1e-12)
+        << "it cools with the same time constant";
   }
 }
 
@@ -87,15 +88,15 @@ TEST(HeatGuard, LowersTheCurrentWithoutAStep) {
     heat.advance(0.001);
   }
   EXPECT_LT(before, 0.92);
-  EXPECT_LT(largest_step, 0.005) << "A in a tick";
+  EXPECT_LT(largest_step, 0.005) << "A per tick";
 }
 
-TEST(HeatGuard, AllowsToTheBitWhatItsFormulaSaysAtEveryHeat) {
+TEST(HeatGuard, AllowedCurrentIsBitIdenticalToItsFormula) {
   constexpr double kRounding = 0.0005;
   int full = 0, lowered = 0;
   for (int i = 0; i <= 4000; ++i) {
     HeatSettings settings = kSettings;
-    // Densely around the warning, where the current begins to fall.
+    // Densely around the warning level, where the current begins to fall.
     const double at = i < 2000 ? i / 2000.0 : 0.79 + 0.02 * (i - 2000) / 2000.0;
     settings.at_start = {at, at, at};
     const HeatGuard heat = guard(settings);
@@ -114,7 +115,7 @@ TEST(HeatGuard, AllowsToTheBitWhatItsFormulaSaysAtEveryHeat) {
   EXPECT_GT(lowered, 1000);
 }
 
-TEST(HeatGuard, TakesWhatItCannotKnowForHotAndNoTimeForNone) {
+TEST(HeatGuard, UnknownHeatIsHotAndInvalidTimeIsIgnored) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   HeatSettings settings = kSettings;
   settings.at_start = {nan, 1.5, -1};
@@ -138,18 +139,18 @@ TEST(HeatGuard, ActsForAnArmWhoseFirstMotorIsKnown) {
       (HeatSettings{.continuous_current = {0, 0.9, 0.9}, .time_constant = {60, 60, 60}}.named()));
 }
 
-TEST(HeatGuard, CountsAForceAsLoweredOnlyWhereHeatLowersIt) {
+TEST(HeatGuard, CountsOnlyForcesLoweredByHeat) {
   HeatGuard heat = guard();
-  heat.sent({3000, 3000, 3000}, true);  // cold: it was the motors' own limit
+  heat.sent({3000, 3000, 3000}, true);  // cold: limited by the motors themselves
   EXPECT_EQ(heat.lowered(), 0u);
   for (int i = 0; i < 10'000; ++i) heat.advance(kLongestHold);
-  heat.sent({500, 500, 500}, false);  // hot, and little was asked for
+  heat.sent({500, 500, 500}, false);  // hot, but only a small force was requested
   EXPECT_EQ(heat.lowered(), 0u);
   heat.sent({500, 500, 500}, true);
   EXPECT_EQ(heat.lowered(), 1u);
 }
 
-/// Answers each read with a tip that goes to and fro by some counts of each encoder.
+/// Answers each read with a tip that moves to and fro by some counts of each encoder.
 class OscillatingWire final : public Transport {
  public:
   explicit OscillatingWire(std::array<std::int16_t, 3>& mA) : mA_(mA) {}
@@ -197,15 +198,16 @@ TEST(HeatOfADevice, FiftyNewtonsFallToTheContinuousCurrent) {
       ASSERT_LT((device.f_sent_W().normalized() - wanted.normalized()).norm(), 1e-9);
     }
   }
-  EXPECT_EQ(most, 3000) << "cold motors may give all they have";
+  EXPECT_EQ(most, 3000) << "cold motors may use their full current";
   EXPECT_NEAR(device.heat().heat_most(), 1, 0.01);
   double warmest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     warmest = std::max(warmest, 1e-3 * std::abs(mA[i]) / kSettings.continuous_current[i]);
   }
-  EXPECT_NEAR(warmest, 1, 0.003) << "the motor that needs most is at its continuous current";
+  EXPECT_NEAR(warmest, 1, 0.003)
+      << "the motor with the largest demand is at its continuous current";
   EXPECT_GT(device.heat().lowered(), 300'000u);
-  // It cools while it is idle, and may give all again.
+  // It cools while it is idle, and then the full current is available again.
   device.deactivate();
   for (std::int64_t tick = 360'000; tick < 420'000; ++tick) {
     device.read(tick * kLongPeriod_ns, tick * kLongPeriod_ns);
@@ -242,7 +244,7 @@ TEST(HeatOfADevice, CoolsOnceTheArmIsGone) {
   EXPECT_LT(run(1000), warm);
 }
 
-TEST(HeatOfADevice, RefusesATimeConstantThatIsNone) {
+TEST(HeatOfADevice, RefusesAnInvalidTimeConstant) {
   DeviceSettings settings = support::vintage_settings();
   settings.heat = kSettings;
   settings.heat.time_constant[1] = 0;

@@ -19,7 +19,7 @@ class HoldToRunTest : public ::testing::Test {
     ASSERT_TRUE(device_->activate());
   }
 
-  /// Runs ticks with 1 N asked; returns the force that stands, N.
+  /// Runs ticks with a requested force of 1 N; returns the acting force, N.
   double run(int ticks) {
     for (int i = 0; i < ticks; ++i) {
       now_ns_ += kPeriod_ns;
@@ -58,11 +58,11 @@ TEST_F(HoldToRunTest, ReleasedButtonEndsForceInOneTick) {
   moved_.buttons = 0;
   EXPECT_EQ(run(1), 0);
   moved_.buttons = 1;
-  EXPECT_LT(run(20), 0.35) << "it opens slowly again";
+  EXPECT_LT(run(20), 0.35) << "the soft start applies again";
   EXPECT_EQ(run(400), 1);
 }
 
-TEST_F(HoldToRunTest, ButtonThatIsStuckCountsForNothing) {
+TEST_F(HoldToRunTest, StuckButtonIsIgnored) {
   moved_.buttons = 1;
   open({.buttons = 1});
   EXPECT_EQ(run(1000), 0);
@@ -72,7 +72,7 @@ TEST_F(HoldToRunTest, ButtonThatIsStuckCountsForNothing) {
   EXPECT_EQ(run(500), 1);
 }
 
-TEST_F(HoldToRunTest, AnotherButtonCountsForNothing) {
+TEST_F(HoldToRunTest, OtherButtonsAreIgnored) {
   open({.buttons = 2});
   run(1);
   moved_.buttons = 1;
@@ -99,7 +99,7 @@ TEST_F(HoldToRunTest, CallersInputLapsesByItself) {
     run(20);
   }
   ASSERT_EQ(run(1), 1);
-  EXPECT_EQ(run(60), 0) << "nobody says any longer that it is held";
+  EXPECT_EQ(run(60), 0) << "the caller no longer confirms that it is held";
 }
 
 TEST_F(HoldToRunTest, BothInputsMustBeHeld) {
@@ -120,7 +120,7 @@ TEST_F(HoldToRunTest, FaultsLatchWhileItWaits) {
   EXPECT_EQ(device_->stage(), DeviceStage::kFault);
 }
 
-TEST_F(HoldToRunTest, NoneIsNeededUnlessNamed) {
+TEST_F(HoldToRunTest, IsNotRequiredUnlessSet) {
   open({});
   EXPECT_EQ(run(500), 1);
   EXPECT_EQ(device_->stage(), DeviceStage::kActive);

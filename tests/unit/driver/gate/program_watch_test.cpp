@@ -18,21 +18,21 @@ using support::ExplainedRig;
 
 constexpr double kPeriodOfRig = ExplainedRig::kTick;
 
-/// An arm in a hand that leads it to and into a program's wall, one way along an axis.
+/// An arm that a hand moves into the wall of a program, along one axis.
 struct Press {
   double damping = 3;      // N s/m, of arm and hand
-  double share = 2;        // of the stiffness that they hold: damping / latency
+  double share = 2;        // of the largest stable stiffness, damping / latency
   double speed = 0.1;      // m/s, of the hand
-  double press = 1;        // N, in the end
-  bool two_sided = false;  // a spring to the wall's place
+  double press = 1;        // N, at the end
+  bool two_sided = false;  // a spring that acts on both sides of the wall
 };
 
-/// What became of it.
+/// Result of a run.
 struct Pressed {
   double wall = 0;     // N/m
-  double found = -1;   // s from the touch until the first oscillation was found; -1: none was
-  double swing = 0;    // of the tip in the last 0.2 s, m
-  double lowered = 0;  // N, of forces within the limit
+  double found = -1;   // s from contact until the first oscillation was found; -1: none
+  double swing = 0;    // amplitude of the tip in the last 0.2 s, m
+  double lowered = 0;  // N, reduction of forces within the limit
 };
 
 constexpr double kTipMass = 0.1, kGripStiffness = 300;  // kg, N/m
@@ -83,7 +83,7 @@ TEST(ProgramWatch, StopsAWallOfTwiceTheStiffnessInTime) {
           const Press press{damping, 2, speed, force, two_sided};
           const Pressed run = press_on(press);
           EXPECT_GE(run.found, 0) << words(press);
-          // An oscillation of a hand that hardly damps grows by a factor of e in 0.3 s.
+          // With little damping by the hand, an oscillation grows by a factor of e in 0.3 s.
           EXPECT_LT(run.found, damping < 1 ? 1.5 : 0.9) << words(press);
           EXPECT_LT(run.swing, damping < 1 ? 4e-3 : 5e-4) << words(press);
         }
@@ -93,7 +93,7 @@ TEST(ProgramWatch, StopsAWallOfTwiceTheStiffnessInTime) {
 }
 
 TEST(ProgramWatch, StopsAPinchGripsOscillationIn300Milliseconds) {
-  // A pinch grip of 3 N s/m that presses firmly; from the touch on.
+  // A pinch grip of 3 N s/m that presses firmly; the time is from contact.
   for (const double force : {1.0, 1.5, 2.0, 2.5}) {
     for (const double speed : {0.05, 0.1, 0.15}) {
       for (const bool two_sided : {false, true}) {
@@ -107,7 +107,7 @@ TEST(ProgramWatch, StopsAPinchGripsOscillationIn300Milliseconds) {
   }
 }
 
-TEST(ProgramWatch, LeavesStableWallsAlone) {
+TEST(ProgramWatch, IgnoresStableWalls) {
   for (const double damping : {0.6, 1.0, 2.0, 3.0, 5.0}) {
     for (const double share : {0.1, 0.3, 0.5, 0.7}) {
       for (const double speed : {0.02, 0.1, 0.3, 0.6}) {

@@ -1,5 +1,5 @@
-// The rise limit is one of the vector: what is added to the old force, in any direction, and not
-// only what its length grows by.
+// The rise limit applies to the vector that is added to the old force, in any direction, not only
+// to the growth of its magnitude.
 
 #include "thimble/driver/safety_gate.h"
 
@@ -20,10 +20,10 @@ constexpr double kPeriod = 1e-3;
 const Vector3d kStill{0, 0, 0};
 
 GateLimits limits() {
-  return support::vintage_settings().limits;  // 5 N, 2 N in a tick
+  return support::vintage_settings().limits;  // 5 N, 2 N per tick
 }
 
-TEST(RiseLimit, TurnsAForceRoundInAsManyTicksAsItsRiseTakes) {
+TEST(RiseLimit, ReversalTakesTheTimeOfItsRise) {
   SafetyGate gate = support::open_gate();
   while (gate.pass({5, 0, 0}, kStill, kPeriod).f_T_W().x() < 5) {
   }
@@ -31,10 +31,10 @@ TEST(RiseLimit, TurnsAForceRoundInAsManyTicksAsItsRiseTakes) {
   for (const double expected : {3.0, 1.0, -1.0, -3.0, -5.0}) {
     EXPECT_NEAR(gate.pass({-5, 0, 0}, kStill, kPeriod).f_T_W().x(), expected, 1e-12);
   }
-  EXPECT_EQ(gate.counters().rise_limited, 2U + 4U);  // two on the way to 5 N
+  EXPECT_EQ(gate.counters().rise_limited, 2U + 4U);  // two ticks on the way to 5 N
 }
 
-TEST(RiseLimit, TurnsAForceAsideInAsManyTicksAsItsRiseTakes) {
+TEST(RiseLimit, TurnTakesTheTimeOfItsRise) {
   SafetyGate gate = support::open_gate();
   for (int k = 0; k < 3; ++k) gate.pass({5, 0, 0}, kStill, kPeriod);
   Vector3d last(5, 0, 0);
@@ -42,7 +42,7 @@ TEST(RiseLimit, TurnsAForceAsideInAsManyTicksAsItsRiseTakes) {
   while (last != Vector3d(0, 5, 0) && ticks < 100) {
     const Vector3d now = gate.pass({0, 5, 0}, kStill, kPeriod).f_T_W();
     EXPECT_LE((now - last).norm(), 2 + 1e-12);
-    EXPECT_GE(now.norm(), 5 / std::sqrt(2.0) - 1e-12);  // and does not let go meanwhile
+    EXPECT_GE(now.norm(), 5 / std::sqrt(2.0) - 1e-12);  // the force does not drop meanwhile
     last = now;
     ++ticks;
   }
@@ -50,7 +50,7 @@ TEST(RiseLimit, TurnsAForceAsideInAsManyTicksAsItsRiseTakes) {
 }
 
 TEST(RiseLimit, DropsAForceThatWouldPushTheHand) {
-  // Friction of 5 N whose hand has just turned round: the old force would push it on.
+  // Friction of 5 N, and the hand has just reversed: the old force would push it.
   SafetyGate gate = support::open_gate();
   for (int k = 0; k < 3; ++k) gate.pass({5, 0, 0}, {-0.2, 0, 0}, kPeriod);
   for (const double expected : {-2.0, -4.0, -5.0}) {
@@ -68,15 +68,15 @@ TEST(RiseLimit, OneCountOfVelocityDropsNoForce) {
   }
 }
 
-TEST(RiseLimit, HoldsForDampingToo) {
-  // A debt that nothing can pay, at 1 m/s: 5 N of damping are asked for at once.
+TEST(RiseLimit, AppliesToDampingToo) {
+  // A debt that cannot be paid, at 1 m/s: 5 N of damping are requested at once.
   SafetyGate gate = support::open_gate(
       limits(), {.stage = EnergyStage::kPassivity, .mass = 0.075, .reservoir = 0.02});
   gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {.work = 1});
   for (const double expected : {-2.0, -4.0, -5.0}) {
     EXPECT_NEAR(gate.pass_guarded({0, 0, 0}, {1, 0, 0}, kPeriod, {}).f_T_W().x(), expected, 1e-12);
   }
-  // And when the velocity turns, the old damping goes at once.
+  // When the velocity reverses, the old damping is removed at once.
   EXPECT_NEAR(gate.pass_guarded({0, 0, 0}, {-1, 0, 0}, kPeriod, {}).f_T_W().x(), 2, 1e-12);
 }
 
@@ -99,7 +99,7 @@ double distance_from_segment(const Vector3d& point, const Vector3d& end) {
   return (point - share * end).norm();
 }
 
-/// Draws a wanted force: often what is hard.
+/// Draws a requested force, often a difficult case.
 Vector3d draw_wanted(support::Random& random, const Vector3d& last) {
   switch (random.bits() % 8) {
     case 0:
@@ -192,8 +192,8 @@ TEST(RiseLimit, NeverSlowsAFallAlongTheForcesOwnDirection) {
 }
 
 TEST(RiseLimit, TakesAtLeastTheWantedEnergy) {
-  // In a tick the gate may give the hand more power than the wanted force only where letting the
-  // whole old force go, and adding what may be added, does too.
+  // In a tick, the gate may give the hand more power than the requested force only if removing the
+  // whole old force and adding the allowed rise would do so too.
   support::Random random(18);
   int held = 0, dropped = 0;
   for (int i = 0; i < 100'000; ++i) {

@@ -24,7 +24,7 @@ GateLimits limits() {
 
 using support::open_gate;
 
-TEST(SafetyGate, LetsAForceWithinAllLimitsThroughUnchanged) {
+TEST(SafetyGate, ForceWithinAllLimitsIsUnchanged) {
   SafetyGate gate = open_gate();
   const Eigen::Vector3d f{0.5, -1, 0.3};
   EXPECT_EQ(gate.pass(f, kStill, kPeriod).f_T_W(), f);
@@ -34,7 +34,7 @@ TEST(SafetyGate, LetsAForceWithinAllLimitsThroughUnchanged) {
 TEST(SafetyGate, NeverExceedsTheLimitAndKeepsTheDirection) {
   support::Random random(41);
   GateLimits swift = limits();
-  swift.rise_max = 1e5;  // 100 N in a tick: any change of these
+  swift.rise_max = 1e5;  // 100 N per tick: allows any change in this test
   SafetyGate gate = open_gate(swift);
   for (int i = 0; i < 10'000; ++i) {
     const Eigen::Vector3d f = random.in_box(20);
@@ -52,12 +52,13 @@ TEST(SafetyGate, LimitsOnlyTheRiseOfAForce) {
   for (int k = 1; k <= 30; ++k) {
     EXPECT_NEAR(gate.pass({0, 0, 3}, kStill, kPeriod).f_T_W().z(), std::min(3.0, 0.1 * k), 1e-12);
   }
-  // A fall is followed at once: slowing it would give energy back to the hand [PHYSICS 1.6].
+  // A falling force is followed at once: slowing it would give energy back to the hand [PHYSICS
+  // 1.6].
   EXPECT_EQ(gate.pass({0, 0, 0.2}, kStill, kPeriod).f_T_W().z(), 0.2);
   EXPECT_EQ(gate.pass({0, 0, 0}, kStill, kPeriod).f_T_W().z(), 0);
 }
 
-/// Visits a wall on a path that is the same in and out, and tells the work done on the hand, J.
+/// Moves into a wall and out on the same path; returns the work done on the hand, J.
 double work_of_visit(double rise_max, double stiffness, double speed) {
   GateLimits with = limits();
   with.rise_max = rise_max;
@@ -67,7 +68,7 @@ double work_of_visit(double rise_max, double stiffness, double speed) {
   const int half = static_cast<int>(0.004 / speed / kTick);
   for (int k = 0; k < 2 * half; ++k) {
     const double v = k < half ? speed : -speed;
-    // Midpoint of the tick, so that an elastic wall without a gate does no net work.
+    // Midpoint of the tick, so that an elastic wall does no net work without a gate.
     const double f = -stiffness * (x + v * kTick / 2);
     work += gate.pass({f, 0, 0}, {v, 0, 0}, kTick).f_T_W().x() * v * kTick;
     x += v * kTick;
@@ -82,8 +83,9 @@ TEST(SafetyGate, FastRiseLimitKeepsAWallPassive) {
 }
 
 TEST(SafetyGate, MakesAWallActiveWhenItsRiseLimitIsTooLow) {
-  // The guard of the test above: a limit on the rise alone, too, gives more energy on the way out
-  // than it took on the way in once it is below stiffness times speed. Hence the arm's default.
+  // Shows that the test above can fail: even a limit on the rise only returns more energy on the
+  // way out than it took on the way in, if it is below stiffness times speed. Hence the default of
+  // the arms.
   for (const double speed : {0.3, 1.0, 2.0}) {
     EXPECT_GT(work_of_visit(1000 * speed * 0.3, 1000, speed), 1e-4) << speed;
   }
@@ -138,7 +140,7 @@ TEST(SafetyGate, StallReopensAndWatchdogFaults) {
   EXPECT_EQ(gate.fault(), Fault::kLoopStalled);
 }
 
-TEST(SafetyGate, StaysAsSlowAsItWasAfterAStallInItsSoftStart) {
+TEST(SafetyGate, StallDoesNotShortenTheSoftStart) {
   SafetyGate gate(limits());
   for (int k = 0; k < 100; ++k) gate.pass({5, 0, 0}, kStill, kPeriod);
   gate.pass({5, 0, 0}, kStill, 0.030);
@@ -157,10 +159,10 @@ SafetyGate open_guarded_gate(const EnergyGuardSettings& settings) {
   return gate;
 }
 
-TEST(EnergyGuard, LeavesAForceAloneWhileTheHandHasPaidForIt) {
+TEST(EnergyGuard, ForceIsUnchangedWhileTheHandHasPaid) {
   SafetyGate gate = open_guarded_gate(passivity());
   const Eigen::Vector3d f{0.5, -1, 0.3};
-  // The hand gives 1 mJ, and gets a part of it back.
+  // The hand gives 1 mJ and gets a part of it back.
   EXPECT_EQ(gate.pass_guarded(f, {0.1, 0, 0}, kPeriod, {.work = -1e-3}).f_T_W(), f);
   EXPECT_EQ(gate.pass_guarded(f, {0.1, 0, 0}, kPeriod, {.work = 0.9e-3}).f_T_W(), f);
   EXPECT_EQ(gate.counters().damped, 0u);
@@ -173,8 +175,8 @@ TEST(EnergyGuard, DampsExactlyTheDebt) {
   const Eigen::Vector3d f = gate.pass_guarded({0, 0, 0}, v, kPeriod, {.work = 1e-4}).f_T_W();
   EXPECT_NEAR(-f.dot(v) * kPeriod, 1e-4, 1e-12);
   EXPECT_LT(f.cross(v).norm(), 1e-12);
-  // However great the debt: the damper is no more than mass / period, and the force no more than
-  // the limit, and no faster there than the rise limit.
+  // For any debt, the damping is at most mass / period, the force is at most the limit, and it
+  // rises no faster than the rise limit.
   const Eigen::Vector3d slow{0.001, 0, 0};
   EXPECT_NEAR(gate.pass_guarded({0, 0, 0}, slow, kPeriod, {.work = 1}).f_T_W().x(), -0.075, 1e-12);
   for (const double expected : {-2.075, -4.075, -5.0}) {
@@ -197,14 +199,14 @@ TEST(EnergyGuard, CreditIsBoundedByTheReservoir) {
   EXPECT_TRUE(damped(0.0002));
 }
 
-/// A gate that fades forces from a debt of 2 mJ beyond its allowance on, its soft start over.
+/// A gate that fades forces from a debt of 2 mJ beyond its allowance; its soft start is over.
 SafetyGate open_gate_with_onset() {
   EnergyGuardSettings settings = passivity();
   settings.onset = 0.002;
   return open_guarded_gate(settings);
 }
 
-/// Returns what of 2 N passes after the arm did `work` (J) on the hand.
+/// Returns the force (N) that passes of 2 N, after the arm did `work` (J) on the hand.
 double sent_at_rest(SafetyGate& gate, double work) {
   return gate.pass_guarded({2, 0, 0}, kStill, kPeriod, {.work = work}).f_T_W().x();
 }
@@ -214,14 +216,14 @@ TEST(EnergyGuard, FadesTheForceOfADebtBeyondItsOnsetEvenAtRest) {
   const auto sent = [&](double work) { return sent_at_rest(gate, work); };
   EXPECT_EQ(sent(0.002), 2);           // at the onset
   EXPECT_NEAR(sent(0.001), 1, 1e-9);   // half-way beyond
-  EXPECT_NEAR(sent(0.002), 0, 1e-12);  // and no more at twice the onset
+  EXPECT_NEAR(sent(0.002), 0, 1e-12);  // zero at twice the onset
 }
 
 TEST(EnergyGuard, FadedForceReturnsSlowly) {
   SafetyGate gate = open_gate_with_onset();
   const auto sent = [&](double work) { return sent_at_rest(gate, work); };
   EXPECT_NEAR(sent(0.003), 1, 1e-9);
-  // A force that followed its debt back would be a spring of F^2 / onset.
+  // A force that returned with its debt would act as a spring of stiffness F^2 / onset.
   EXPECT_NEAR(sent(-0.0019), 1, 1e-9);
   EXPECT_NEAR(sent(-0.0002), 1, 2e-3);
   double last = sent(0), most = 0;
@@ -234,16 +236,16 @@ TEST(EnergyGuard, FadedForceReturnsSlowly) {
   EXPECT_NEAR(last, 2, 2e-3);
 }
 
-TEST(EnergyGuard, GivesAForceBackToAHandThatGoesOnAfterTheTrouble) {
-  // As the program sets it: some energy is allowed, and one count is not damped.
+TEST(EnergyGuard, ForceReturnsAfterADebt) {
+  // The settings of the program: some energy is allowed, and one count is not damped.
   for (const double debt : {0.0045, 0.0055, 0.006, 0.012, 0.1}) {
     EnergyGuardSettings settings = passivity();
     settings.allowance = settings.onset = 0.002;
     settings.speed_floor = 0.014;
     SafetyGate gate = open_guarded_gate(settings);
     sent_at_rest(gate, debt);
-    // Now the hand presses 4 mm into 1 N/mm, once a second; the work is what was sent, times the
-    // way.
+    // Now the hand presses 4 mm into 1 N/mm, once a second; the work is the sent force times the
+    // displacement.
     double f = 0, x = 0, most = 0;
     for (int k = 0; k < 20000; ++k) {
       const double to = -0.004 * std::sin(2 * std::numbers::pi * k * kPeriod);
@@ -258,7 +260,7 @@ TEST(EnergyGuard, GivesAForceBackToAHandThatGoesOnAfterTheTrouble) {
   }
 }
 
-TEST(EnergyGuard, DampsNothingOfWhatOneCountMayBe) {
+TEST(EnergyGuard, DoesNotDampSpeedsBelowOneCount) {
   EnergyGuardSettings settings = passivity();
   settings.speed_floor = 0.02;
   SafetyGate gate = open_guarded_gate(settings);
@@ -266,7 +268,7 @@ TEST(EnergyGuard, DampsNothingOfWhatOneCountMayBe) {
     return gate.pass_guarded({0, 0, 0}, {v, 0, 0}, kPeriod, {.work = 1}).f_T_W().x();
   };
   EXPECT_EQ(damped(0.0199), 0);
-  EXPECT_NEAR(damped(0.021), -75 * 0.001, 1e-9);  // and then no jump
+  EXPECT_NEAR(damped(0.021), -75 * 0.001, 1e-9);  // above it, without a jump
   EXPECT_NEAR(damped(-0.04), 75 * 0.02, 1e-9);
 }
 
@@ -274,10 +276,10 @@ TEST(EnergyGuard, CreditLastsWhileSpringsArePressed) {
   SafetyGate gate = open_guarded_gate(passivity());
   gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {.work = -0.09, .held = 0.08});
   EXPECT_NEAR(gate.energy(), 0.09, 1e-12);
-  // What they hold does not give credit that nobody brought.
+  // Stored energy gives no credit for work that the hand did not do.
   gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {.work = 0.05, .held = 0.5});
   EXPECT_NEAR(gate.energy(), 0.04, 1e-12);
-  // A hand that presses with all its weight loses none of it.
+  // A hand that presses with its whole weight keeps its credit.
   gate.pass_guarded({0, 0, 0}, kStill, kPeriod, {.work = -1, .held = 3});
   EXPECT_NEAR(gate.energy(), 1.04, 1e-12);
   for (const double held : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
@@ -286,16 +288,16 @@ TEST(EnergyGuard, CreditLastsWhileSpringsArePressed) {
   }
 }
 
-TEST(EnergyGuard, HoldsItsDampingBackWithTheSoftStart) {
+TEST(EnergyGuard, SoftStartAlsoLimitsDamping) {
   SafetyGate gate(limits(), passivity());
   gate.pass_guarded({0, 0, 0}, kStill, 0, {});
   EXPECT_NEAR(gate.pass_guarded({0, 0, 0}, {1, 0, 0}, kPeriod, {.work = 1}).f_T_W().norm(),
               5e-3 / 0.3, 1e-12);
 }
 
-TEST(EnergyGuard, BoundsAForceByWhatTheSpringOfItsSlopeWouldHold) {
+TEST(EnergyGuard, BoundingStageLimitsForceByItsSlope) {
   SafetyGate gate = open_guarded_gate({.stage = EnergyStage::kBounding, .slope = 10});
-  // From nothing, 1 mm of way carries 10 mN; held at 2 N, 1 mm back costs at least 10 mN.
+  // From zero force, 1 mm of motion allows 10 mN; at 2 N, 1 mm back costs at least 10 mN.
   EXPECT_NEAR(gate.pass_guarded({3, 0, 0}, kStill, kPeriod, {.move_W = {-1e-3, 0, 0}}).f_T_W().x(),
               0.01, 1e-15);
   const EnergyFlow back{.move_W = {1e-3, 0, 0}, .f_sent_W = {2, 0, 0}};
@@ -304,7 +306,7 @@ TEST(EnergyGuard, BoundsAForceByWhatTheSpringOfItsSlopeWouldHold) {
   EXPECT_EQ(gate.counters().bounded, 2u);
 }
 
-TEST(EnergyGuard, FindsNoForceForEnergyThatIsNotANumber) {
+TEST(EnergyGuard, ZeroForceForEnergyThatIsNotFinite) {
   for (const EnergyGuardSettings& settings :
        {passivity(), EnergyGuardSettings{.stage = EnergyStage::kBounding, .slope = 10}}) {
     SafetyGate gate = open_guarded_gate(settings);
@@ -321,7 +323,7 @@ TEST(SafetyGate, KeepsTheFirstFault) {
   EXPECT_EQ(gate.fault(), Fault::kTransportLost);
 }
 
-TEST(Fault, SaysWhatToDo) {
+TEST(Fault, DescriptionHasARemedy) {
   for (int i = 0; i <= static_cast<int>(kLastFault); ++i) {
     const auto fault = static_cast<Fault>(i);
     EXPECT_NE(name(fault), "unknown");
@@ -329,7 +331,7 @@ TEST(Fault, SaysWhatToDo) {
   }
 }
 
-TEST(EnergyGuard, ForgetsDebtAndFadingWhenItStartsAnew) {
+TEST(EnergyGuard, RestartClearsDebtAndFading) {
   PassivityObserver observer(
       {.stage = EnergyStage::kPassivity, .mass = 0.075, .reservoir = 0.02, .onset = 0.01});
   observer.book(1);

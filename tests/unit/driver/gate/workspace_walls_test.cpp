@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
 
-/// A device in a box of 0.1 m about the origin, whose soft start is over.
+/// A device with walls at 0.1 m around the origin, after its soft start.
 class WorkspaceWallsTest : public ::testing::Test {
  protected:
   void open(const Eigen::Vector3d& p_WT) {
@@ -34,7 +34,7 @@ class WorkspaceWallsTest : public ::testing::Test {
     device_->write({.f_T_W = f_W, .touch = {}});
   }
 
-  /// Brings the tip to a point within `ticks`, with the force on it; ends with a fault.
+  /// Moves the tip to a point within `ticks`, under the given force; stops on a fault.
   void move(const Eigen::Vector3d& to, int ticks, const Eigen::Vector3d& f_W) {
     const Eigen::Vector3d from = moved_.p_BT;
     for (int i = 1; i <= ticks && device_->fault() == Fault::kNone; ++i) {
@@ -70,14 +70,15 @@ TEST_F(WorkspaceWallsTest, TakeAwayForceThatPushesOut) {
   EXPECT_NEAR(device_->f_sent_W().y(), 1, 1e-9);
 }
 
-// A force that ended at the wall would push a tip that a hand holds loosely to and fro across it.
+// A force that ended abruptly at the wall would push a loosely held tip to and fro across it.
 TEST_F(WorkspaceWallsTest, ForceThatPushesOutFadesWithoutSteps) {
   open({0, 0, 0});
   move({0.0999, 0, 0}, 500, {4, 0, 0});
   double before = device_->f_sent_W().x();
   EXPECT_EQ(before, 4);
   for (int i = 1; i <= 200; ++i) {
-    for (int k = 0; k < 20; ++k) tick({0.0999 + 1e-4 * i, 0, 0}, {4, 0, 0});  // comes to rest
+    for (int k = 0; k < 20; ++k)
+      tick({0.0999 + 1e-4 * i, 0, 0}, {4, 0, 0});  // the tip comes to rest
     const double now = device_->f_sent_W().x();
     EXPECT_LE(now, before);
     EXPECT_GT(now, before - 0.06) << i;  // (200 + 4 / 0.015) N/m over 0.1 mm
@@ -113,12 +114,12 @@ TEST_F(WorkspaceWallsTest, StayOffAfterReturnUntilActivated) {
   EXPECT_EQ(moved_.f_T_B, Eigen::Vector3d(1, 0, 0));
 }
 
-TEST_F(WorkspaceWallsTest, LeaveAnArmAloneThatBeginsOutside) {
+TEST_F(WorkspaceWallsTest, DoNotPushAnArmThatStartsOutside) {
   open({-0.2, 0, 0});
   for (int i = 0; i < 400; ++i) tick({-0.2, 0, 0}, {1, 0, 0});
   EXPECT_EQ(device_->f_sent_W(), Eigen::Vector3d(1, 0, 0));
   EXPECT_EQ(device_->fault(), Fault::kNone);
-  // Beyond where it began there is the wall.
+  // Beyond its start point the wall acts.
   move({-0.21, 0, 0}, 100, {0, 0, 0});
   for (int i = 0; i < 50; ++i) tick({-0.21, 0, 0}, {0, 0, 0});
   EXPECT_NEAR(device_->f_sent_W().x(), 2, 1e-9);
@@ -132,7 +133,7 @@ TEST_F(WorkspaceWallsTest, StayBelowTheLimitOfTheForce) {
   EXPECT_LT(device_->f_sent_W().x(), -2);
 }
 
-TEST_F(WorkspaceWallsTest, BrakeOnTheWayOutAlone) {
+TEST_F(WorkspaceWallsTest, DampOnlyOutwardMotion) {
   open({0, 0, 0});
   move({0.1, 0, 0}, 200, {0, 0, 0});
   move({0.11, 0, 0}, 20, {0, 0, 0});  // 0.5 m/s
@@ -166,7 +167,7 @@ TEST_F(WorkspaceWallsTest, KeepTheirStrongestForce) {
   EXPECT_GE(device_->wall_counters().f_strongest_W.z(), 4 - 1e-9);
 }
 
-TEST_F(WorkspaceWallsTest, AreNoneUnlessNamed) {
+TEST_F(WorkspaceWallsTest, AreOffUnlessSet) {
   auto opened =
       Device::open(std::make_unique<support::MovedArm>(moved_), support::moved_settings(), 0);
   ASSERT_TRUE(opened);
@@ -177,7 +178,7 @@ TEST_F(WorkspaceWallsTest, AreNoneUnlessNamed) {
   EXPECT_EQ(device_->f_sent_W(), Eigen::Vector3d(1, 0, 0));
 }
 
-TEST_F(WorkspaceWallsTest, AreRefusedWhereTheyCannotBe) {
+TEST_F(WorkspaceWallsTest, AreRefusedIfInvalid) {
   DeviceSettings settings = support::moved_settings();
   for (const double corner : {0.2, static_cast<double>(NAN)}) {
     settings.walls.min_W = {corner, 0, 0};

@@ -1,4 +1,5 @@
-// The way out of a touch whose wire refuses: zero force is said again, and what stands is told.
+// The end of a run on a wire that refuses messages: zero force is sent again, and the acting force
+// is reported.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ std::vector<std::byte> report(std::int16_t yaw = 0) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// A device that pushes with 0.5 N at home, on a wire that can refuse.
+/// A device that pushes with 0.5 N in the home pose, on a wire that can refuse messages.
 class ZeroForce : public ::testing::Test {
  protected:
   void open(const DeviceSettings& settings = support::vintage_settings()) {
@@ -61,7 +62,7 @@ class ZeroForce : public ::testing::Test {
   std::unique_ptr<Device> device_;
 };
 
-TEST_F(ZeroForce, IsSaidAgainAtOnceWhenItIsRefused) {
+TEST_F(ZeroForce, IsResentAtOnceWhenRefused) {
   open();
   wire_.refusals = 1;
   device_->deactivate();
@@ -70,13 +71,13 @@ TEST_F(ZeroForce, IsSaidAgainAtOnceWhenItIsRefused) {
   EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0));
 }
 
-TEST_F(ZeroForce, IsToldOnlyOnceItWasTaken) {
+TEST_F(ZeroForce, IsReportedOnlyWhenAcknowledged) {
   open();
   wire_.refusals = 3;
   device_->deactivate();
   EXPECT_FALSE(told_zero());
   EXPECT_FALSE(device_->zero_assured());
-  EXPECT_EQ(device_->f_sent_W(), kPush);  // it stands
+  EXPECT_EQ(device_->f_sent_W(), kPush);  // it still acts
   EXPECT_EQ(device_->stage(), DeviceStage::kIdle);
   tick(kPush);
   EXPECT_EQ(device_->f_sent_W(), kPush);
@@ -100,12 +101,12 @@ ServoEnd run_to_end(Device& device, Clock& clock, support::Wire& wire, int refus
   }
 }
 
-TEST_F(ZeroForce, IsInsistedOnAtTheEndOfALoopUntilItIsTaken) {
+TEST_F(ZeroForce, IsRepeatedAtTheEndOfALoopUntilTaken) {
   open();
   VirtualClock clock;
   clock.sleep_until_ns(now_ns_ + kPeriod_ns);
   const std::int64_t begin_ns = clock.now_ns();
-  // Two at once, and one in each of 30 ms.
+  // Two at once, then one in each of 30 ms.
   EXPECT_EQ(run_to_end(*device_, clock, wire_, 31), ServoEnd::kDone);
   EXPECT_TRUE(told_zero());
   EXPECT_TRUE(device_->zero_assured());
@@ -128,7 +129,7 @@ TEST_F(ZeroForce, IsRetriedUntilTheWatchdogTime) {
   EXPECT_LE(waited, 0.102);
 }
 
-/// A clock that stands still.
+/// A clock that does not advance.
 class DeadClock final : public Clock {
  public:
   std::int64_t now_ns() const noexcept override { return 0; }
@@ -136,7 +137,7 @@ class DeadClock final : public Clock {
   int sleeps = 0;
 };
 
-TEST_F(ZeroForce, IsInsistedOnNoLongerWithAClockThatStandsStill) {
+TEST_F(ZeroForce, RepetitionEndsWithAStoppedClock) {
   open();
   wire_.refusals = kForGood;
   device_->deactivate();
@@ -146,7 +147,7 @@ TEST_F(ZeroForce, IsInsistedOnNoLongerWithAClockThatStandsStill) {
   EXPECT_EQ(device_->fault(), Fault::kRefused);
 }
 
-/// A clock of a wire on which each message takes 60 ms to be refused.
+/// A clock for a wire on which each message takes 60 ms to be refused.
 class SlowClock final : public Clock {
  public:
   std::int64_t now_ns() const noexcept override { return now_ns_; }
@@ -160,33 +161,33 @@ class SlowClock final : public Clock {
   std::int64_t now_ns_ = 0;
 };
 
-TEST_F(ZeroForce, IsInsistedOnNoLongerWhereEachMessageWaits) {
+TEST_F(ZeroForce, RepetitionEndsIfEachMessageWaits) {
   open();
   wire_.refusals = kForGood;
   device_->deactivate();
   SlowClock clock;
   EXPECT_FALSE(device_->insist_on_zero(clock));
-  EXPECT_EQ(clock.sleeps, 2);  // after them 120 ms are over
+  EXPECT_EQ(clock.sleeps, 2);  // after them 120 ms have passed
 }
 
-TEST_F(ZeroForce, IsInsistedOnByADeviceThatGoes) {
+TEST_F(ZeroForce, IsRepeatedByTheDestructor) {
   open();
-  wire_.refusals = 3;  // two at once and one in the next millisecond, by the clock on the wall
+  wire_.refusals = 3;  // two at once and one in the next millisecond of real time
   device_.reset();
   EXPECT_TRUE(told_zero());
 }
 
-TEST_F(ZeroForce, IsNotAssuredByAWireThatIsLost) {
+TEST_F(ZeroForce, IsNotAssuredByALostWire) {
   open();
   wire_.lost = true;
   device_->deactivate();
   EXPECT_FALSE(device_->zero_assured());
   EXPECT_EQ(device_->fault(), Fault::kTransportLost);
-  EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0));  // nothing goes out any more
+  EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0));  // nothing is sent any more
 }
 
 TEST_F(ZeroForce, IsNotAssuredAfterARefusedForce) {
-  // The message may have arrived all the same.
+  // The message may have arrived nevertheless.
   wire_.to_host.push_back(report());
   auto opened = Device::open(
       std::make_unique<WireLink>(std::make_unique<support::ScriptedTransport>(wire_),
@@ -210,7 +211,7 @@ TEST_F(ZeroForce, IsNotAssuredAfterARefusedForce) {
   EXPECT_TRUE(device_->zero_assured());
 }
 
-/// A clock that lets the last message leave after `leaves_after` sleeps.
+/// A clock with which the last message is sent after `leaves_after` sleeps.
 class LeavingClock final : public Clock {
  public:
   LeavingClock(support::Wire& wire, int leaves_after, TransportStatus outcome)
@@ -228,7 +229,7 @@ class LeavingClock final : public Clock {
   std::int64_t now_ns_ = 0;
 };
 
-TEST_F(ZeroForce, IsNotAssuredWhileItIsOnItsWay) {
+TEST_F(ZeroForce, IsNotAssuredInTransit) {
   open();
   wire_.settled = TransportStatus::kNothing;
   device_->deactivate();
@@ -237,11 +238,11 @@ TEST_F(ZeroForce, IsNotAssuredWhileItIsOnItsWay) {
   LeavingClock clock(wire_, 5, TransportStatus::kOk);
   EXPECT_TRUE(device_->insist_on_zero(clock));
   EXPECT_EQ(clock.now_ns(), 5 * kPeriod_ns);
-  EXPECT_EQ(wire_.to_arm.size(), sent) << "it is waited for, not sent again";
+  EXPECT_EQ(wire_.to_arm.size(), sent) << "the device waits for it and does not send it again";
   EXPECT_EQ(device_->fault(), Fault::kNone);
 }
 
-TEST_F(ZeroForce, IsSentAgainWhenItFailedOnItsWay) {
+TEST_F(ZeroForce, IsResentWhenItFailedInTransit) {
   open();
   wire_.settled = TransportStatus::kNothing;
   device_->deactivate();
@@ -254,7 +255,7 @@ TEST_F(ZeroForce, IsSentAgainWhenItFailedOnItsWay) {
   EXPECT_TRUE(device_->zero_assured());
 }
 
-TEST_F(ZeroForce, IsNotAssuredWhereTheWireIsLostBeforeItLeft) {
+TEST_F(ZeroForce, IsNotAssuredIfTheWireIsLostInTransit) {
   open();
   wire_.settled = TransportStatus::kNothing;
   device_->deactivate();
@@ -264,20 +265,20 @@ TEST_F(ZeroForce, IsNotAssuredWhereTheWireIsLostBeforeItLeft) {
   EXPECT_FALSE(device_->zero_assured());
 }
 
-TEST_F(ZeroForce, IsNotWhatARefusedTickLeaves) {
+TEST_F(ZeroForce, RefusedTickKeepsThePreviousForce) {
   open();
   wire_.refusals = 10;
   for (int k = 0; k < 10; ++k) {
     tick({0, 4, 0});
     EXPECT_EQ(device_->f_sent_W(), kPush);
   }
-  // The arm still holds 0.5 N, and 2 N in a tick is all that may be added.
+  // The arm still holds 0.5 N, and at most 2 N per tick may be added.
   tick({0, 4, 0});
   EXPECT_NEAR(device_->f_sent_W().y(), 2.5, 1e-12);
   EXPECT_EQ(device_->fault(), Fault::kNone);
 }
 
-TEST_F(ZeroForce, IsBookedAsTheForceThatStandsWhileItIsRefused) {
+TEST_F(ZeroForce, RefusedZeroKeepsThePreviousForceInTheAccount) {
   DeviceSettings settings = support::vintage_settings();
   settings.energy = {
       .stage = EnergyStage::kPassivity, .mass = 0.075, .allowance = 1, .reservoir = 0.02};
@@ -285,14 +286,14 @@ TEST_F(ZeroForce, IsBookedAsTheForceThatStandsWhileItIsRefused) {
   const double before = device_->gate().energy();
   const double y_before = device_->state().p_WT.y();
   wire_.refusals = 12;
-  // The law lets go at once, the arm does not, and the hand is pushed along.
+  // The law requests zero at once, the arm keeps its force, and the hand is pushed.
   for (int k = 1; k <= 11; ++k) tick({0, 0, 0}, static_cast<std::int16_t>(-k));
   const double way = device_->state().p_WT.y() - y_before;
   EXPECT_GT(way, 2e-4);
   EXPECT_NEAR(before - device_->gate().energy(), 0.5 * way, 0.01 * 0.5 * way);
 }
 
-TEST_F(ZeroForce, FollowsAClockThatStepsBackAndStays) {
+TEST_F(ZeroForce, FollowsABackwardClock) {
   for (const EnergyStage stage : {EnergyStage::kNone, EnergyStage::kPassivity}) {
     DeviceSettings settings = support::vintage_settings();
     settings.energy = {.stage = stage, .mass = 0.075, .allowance = 1, .reservoir = 0.02};
@@ -311,7 +312,7 @@ TEST_F(ZeroForce, FollowsAClockThatStepsBackAndStays) {
   }
 }
 
-TEST_F(ZeroForce, FollowsAClockThatStepsBackInATickWithoutAWrite) {
+TEST_F(ZeroForce, FollowsABackwardClockWithoutAWrite) {
   open();
   now_ns_ -= 10'000'000;
   device_->read(now_ns_, now_ns_);

@@ -11,19 +11,20 @@
 
 namespace thimble::math {
 
-/// A function under test with arguments drawn for it; a function of one takes the first.
+/// A function under test with a generator of its arguments; a function of one argument uses the
+/// first.
 struct Trial {
   std::string name;
   std::function<double(double, double)> function;
   std::function<double(support::Random&)> x, y;
-  std::uint64_t hash;  ///< Of the results of 20,000 arguments.
+  std::uint64_t hash;  ///< Hash of the results for 20,000 arguments.
 };
 
 inline auto between(double low, double high) {
   return [=](support::Random& random) { return random.uniform(low, high); };
 }
 
-/// Any exponent as often as any other, either sign.
+/// Draws every exponent equally often, with either sign.
 inline auto of_size(double low, double high) {
   return [=](support::Random& random) {
     const double power = random.uniform(low, high);
@@ -33,7 +34,7 @@ inline auto of_size(double low, double high) {
   };
 }
 
-/// Any 64 bits, NaN and denormal numbers included.
+/// Draws any 64 bits, including NaN and denormal numbers.
 inline double any_bits(support::Random& random) {
   return std::bit_cast<double>(random.bits());
 }
@@ -50,7 +51,7 @@ inline double just_below_1(support::Random& random) {
   return 1 - std::abs(of_size(-53, -2)(random));
 }
 
-/// Every function over what a simulation asks for, over any size, and where it is difficult.
+/// Every function over the arguments of a simulation, over all magnitudes, and in difficult ranges.
 inline std::vector<Trial> trials() {
   const auto one = [](double (*f)(double)) { return [f](double x, double) { return f(x); }; };
   const auto none = between(0, 0);

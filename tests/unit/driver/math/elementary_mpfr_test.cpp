@@ -23,11 +23,11 @@ class Number {
   mpfr_t value_;
 };
 
-/// The double nearest to the true value of a function, by its name.
+/// Returns the double nearest to the true value of the function with this name.
 class Nearest {
  public:
   Nearest() {
-    mpfr_set_emin(-1073);  // a double's, denormal numbers included
+    mpfr_set_emin(-1073);  // that of a double, including denormal numbers
     mpfr_set_emax(1024);
   }
 
@@ -103,11 +103,11 @@ TEST(ElementaryByMpfr, SineAndCosineAreWithinTheirBound) {
     }
   }
   EXPECT_LT(worst, 1.2);
-  EXPECT_GT(worst, 0.5) << "as good as sin and cos: these would do for both";
+  EXPECT_GT(worst, 0.5) << "if it were as accurate as sin and cos, it could replace them";
 }
 
 TEST(ElementaryByMpfr, QuarterTurnsAreReducedExactly) {
-  // The double nearest to a multiple of pi / 2: what remains is as small as it gets.
+  // The double nearest to a multiple of pi / 2: the remainder is minimal.
   Nearest nearest;
   Number multiple(1200);
   support::Random random(5);
@@ -121,14 +121,14 @@ TEST(ElementaryByMpfr, QuarterTurnsAreReducedExactly) {
     EXPECT_EQ(sin(angle), nearest.of("sin", angle, 0)) << std::hexfloat << angle;
     EXPECT_EQ(cos(angle), nearest.of("cos", angle, 0)) << std::hexfloat << angle;
   }
-  // The worst of all doubles [Muller].
+  // The worst case of all doubles [Muller].
   const double worst = 0x1.6ac5b262ca1ffp+849;
   EXPECT_EQ(cos(worst), nearest.of("cos", worst, 0));
   EXPECT_EQ(tan(worst), nearest.of("tan", worst, 0));
 }
 
-/// Whether a constant of two doubles is `number`: the nearest double, and the one nearest to the
-/// rest.
+/// Returns whether a constant of two doubles is `number`: the nearest double, and the double
+/// nearest to the rest.
 void expect_pair(const DoubleDouble& found, Number& number, const std::string& what) {
   const double high = mpfr_get_d(number, MPFR_RNDN);
   EXPECT_EQ(found.hi, high) << what;
@@ -136,7 +136,7 @@ void expect_pair(const DoubleDouble& found, Number& number, const std::string& w
   EXPECT_EQ(found.lo, mpfr_get_d(number, MPFR_RNDN)) << what;
 }
 
-TEST(ElementaryByMpfr, TheTablesHoldWhatTheySay) {
+TEST(ElementaryByMpfr, TablesMatchTheirDefinitions) {
   mpfr_set_emin(-5000);
   mpfr_set_emax(5000);
   Number x(1500), pi(1500);
@@ -198,6 +198,6 @@ TEST(ElementaryByMpfr, TheTablesHoldWhatTheySay) {
 }  // namespace thimble::math
 #else
 TEST(ElementaryByMpfr, EveryResultIsTheDoubleNearestToTheTrueValue) {
-  GTEST_SKIP() << "install libmpfr-dev: nothing else knows the true values";
+  GTEST_SKIP() << "install libmpfr-dev, which computes the true values";
 }
 #endif

@@ -17,7 +17,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeast = std::numeric_limits<double>::denorm_min();
 
-/// Equal with their signs; any NaN is any other.
+/// Equal including signs; all NaN are equal.
 void expect_same(double found, double wanted) {
   if (std::isnan(wanted)) {
     EXPECT_TRUE(std::isnan(found)) << found;
@@ -27,8 +27,8 @@ void expect_same(double found, double wanted) {
   }
 }
 
-TEST(Elementary, GivesTheStoredBitsOnEveryProcessorByEveryCompiler) {
-  // Stored where each result was the one of MPFR (elementary_mpfr_test.cpp).
+TEST(Elementary, IsBitIdenticalOnEveryProcessorAndCompiler) {
+  // Stored on a system on which each result equalled that of MPFR (elementary_mpfr_test.cpp).
   for (const Trial& trial : trials()) {
     support::Random random(std::uint64_t{11});
     support::RunHash hash;
@@ -114,8 +114,8 @@ TEST(Elementary, PowersOfTheExtremesAreThoseOfTheCLibrary) {
   expect_same(pow(-8, 2), kNan);
 }
 
-TEST(Elementary, RunsUphillOnEachSideOfItsJoints) {
-  // Where one table entry, one series or one range of angles ends and the next begins.
+TEST(Elementary, IsMonotonicAcrossItsPieces) {
+  // At the boundaries between table entries, series and ranges of angles.
   const auto uphill = [](double (*f)(double), double at) {
     double x = at;
     for (int i = 0; i < 100; ++i) x = std::nextafter(x, -kInfinity);
@@ -138,7 +138,8 @@ TEST(Elementary, RunsUphillOnEachSideOfItsJoints) {
 }
 
 TEST(Elementary, NoProductIsFusedWithASum) {
-  // Of a square of 53 bits rounding takes 53 more: with a fused multiply-add they would be left.
+  // Rounding removes the lower 53 bits of the square of a 53-bit number; with a fused multiply-add
+  // they would remain.
   support::Random random(7);
   const auto draw = between(1, 2);
   for (int i = 0; i < 1000; ++i) {
@@ -148,7 +149,7 @@ TEST(Elementary, NoProductIsFusedWithASum) {
   }
 }
 
-/// How many doubles `found` lies away from `wanted`.
+/// Returns the distance between `found` and `wanted` in doubles.
 std::int64_t steps_apart(double found, double wanted) {
   const auto place = [](double x) {
     const auto bits = std::bit_cast<std::int64_t>(x);
@@ -176,7 +177,7 @@ TEST(Elementary, SineAndCosineAreWithinOneUlp) {
   EXPECT_EQ(hash.value(), 0xb69a902ec97f98feu) << std::hex << hash.value();
 }
 
-TEST(Elementary, SineAndCosineAtOnceHoldAroundEachStepOfTheirTable) {
+TEST(Elementary, SineCosinePairIsAccurateAtEachTableStep) {
   for (int i = -200; i <= 200; ++i) {
     for (const double beside : {0.0, 0x1p-50, 0x1p-30, 0x1p-21, 0x1p-20, 0x1p-19, 0x1.9p-7}) {
       for (const double sign : {-1, 1}) {
@@ -188,7 +189,7 @@ TEST(Elementary, SineAndCosineAtOnceHoldAroundEachStepOfTheirTable) {
   }
 }
 
-TEST(RoughArc, IsNoFartherFromTheTrueAngleThanItSays) {
+TEST(RoughArc, ErrorIsWithinItsReportedBound) {
   support::Random random(12);
   int known = 0;
   for (int i = 0; i < 200000; ++i) {
@@ -202,7 +203,7 @@ TEST(RoughArc, IsNoFartherFromTheTrueAngleThanItSays) {
     ASSERT_LE(wrong, 1e-12 * std::abs(true_angle));
   }
   EXPECT_GT(known, 150000);
-  // The most that the series is wrong by: halfway between two eighths.
+  // The largest error of the series: halfway between two eighths.
   for (double slope = 0x1p-30; slope < 2; slope *= 1.0001) {
     const auto [angle, wrong] = rough_atan2(slope, 1);
     ASSERT_LE(std::abs(angle - atan2(slope, 1)), wrong) << slope;

@@ -30,12 +30,12 @@ TEST(PrintableText, ReplacesCharactersThatReorderText) {
 
 TEST(PrintableText, ReplacesEachByteThatIsNoUtf8) {
   EXPECT_EQ(printable("\xFFz"), "?z");
-  EXPECT_EQ(printable("\x9Bz"), "?z");            // a byte of the middle
+  EXPECT_EQ(printable("\x9Bz"), "?z");            // a continuation byte
   EXPECT_EQ(printable("\xC0\x9Bz"), "??z");       // ESC in two bytes
   EXPECT_EQ(printable("\xE0\x80\x9Bz"), "???z");  // and in three
-  EXPECT_EQ(printable("\xED\xA0\x80z"), "???z");  // half of a pair
+  EXPECT_EQ(printable("\xED\xA0\x80z"), "???z");  // half of a surrogate pair
   EXPECT_EQ(printable("\xF4\x90\x80\x80z"), "????z");
-  EXPECT_EQ(printable("a\xE2\x80"), "a??");  // cut short
+  EXPECT_EQ(printable("a\xE2\x80"), "a??");  // truncated
 }
 
 TEST(PrintableText, ReplacesLineFeedsOfNamesOnly) {
@@ -43,7 +43,7 @@ TEST(PrintableText, ReplacesLineFeedsOfNamesOnly) {
   EXPECT_EQ(printable_name("a\nb\tc"), "a?b?c");
 }
 
-TEST(PrintableText, IsPrintableAlready) {
+TEST(PrintableText, LeavesPrintableTextUnchanged) {
   auto state = static_cast<std::uint32_t>(support::seed_of(1));
   for (int round = 0; round < 2000; ++round) {
     std::string text;

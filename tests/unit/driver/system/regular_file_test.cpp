@@ -57,7 +57,7 @@ TEST(ReadFile, RefusesAnEndlessDevice) {
   EXPECT_NE(read.error().message.find("not a regular file"), std::string::npos);
 }
 
-// Without a writer this would wait for ever.
+// Opening a pipe without a writer must not block.
 TEST(ReadFile, RefusesAPipe) {
   const auto path = support::scratch_folder() / "pipe";
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);

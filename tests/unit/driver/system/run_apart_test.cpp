@@ -15,7 +15,7 @@
 namespace thimble::driver {
 namespace {
 
-TEST(RunApart, GivesWhatTheWorkGives) {
+TEST(RunApart, ReturnsTheResultOfTheWork) {
   const std::string much(20'000'000, 'x');
   const auto done = run_apart([&] { return much; }, {});
   ASSERT_TRUE(done.ok()) << done.error().message;
@@ -23,12 +23,12 @@ TEST(RunApart, GivesWhatTheWorkGives) {
   EXPECT_EQ(*run_apart([] { return std::string(); }, {}), "");
 }
 
-TEST(ApartReader, TakesNoMoreThanIsThere) {
+TEST(ApartReader, NeverReadsBeyondItsBytes) {
   const auto written = run_apart(
       [](ApartWriter& out) {
         const double numbers[] = {1, 2, 3};
         out.write_array(numbers, 3);
-        const std::uint64_t many = 1'000'000'000'000;  // claimed by work that went wrong
+        const std::uint64_t many = 1'000'000'000'000;  // claimed by faulty work
         out.write(&many, sizeof many);
         out.write("ab", 2);
       },
@@ -53,7 +53,7 @@ TEST(RunApart, SurvivesWorkThatCrashesHangsOrAsksForTooMuch) {
       },
       {});
   ASSERT_FALSE(crashed.ok());
-  EXPECT_EQ(crashed.error().message, "breaks its reader");
+  EXPECT_EQ(crashed.error().message, "crashes its reader");
   const auto left = run_apart([]() -> std::string { std::_Exit(0); }, {});
   EXPECT_FALSE(left.ok());
   const auto hung = run_apart(

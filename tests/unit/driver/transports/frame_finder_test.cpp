@@ -63,7 +63,7 @@ TEST(FrameFinder, DropsAndCountsTornAndOverlongMessages) {
   EXPECT_EQ(finder.torn(), 2u);
 }
 
-TEST(FrameFinder, NeverHandsOutMoreThanItMayAndNeverWithoutBorders) {
+TEST(FrameFinder, ReturnsOnlyFramedMessagesThatFit) {
   support::Random random(81);
   FrameFinder finder({.begin = std::byte{'<'}, .end = std::byte{'>'}, .size_max = 16});
   std::array<std::byte, kReportCapacity> buffer{};
@@ -82,7 +82,7 @@ TEST(FrameFinder, NeverHandsOutMoreThanItMayAndNeverWithoutBorders) {
   EXPECT_GT(found, 1000u);
 }
 
-TEST(FtdiPacket, LosesItsTwoStatusBytesAndNothingElse) {
+TEST(FtdiPacket, OnlyTheTwoStatusBytesAreRemoved) {
   support::Random random(82);
   for (std::size_t size = 0; size <= 300; ++size) {
     const auto content = support::any_bytes(random, size);

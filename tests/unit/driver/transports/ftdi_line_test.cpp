@@ -26,8 +26,8 @@ TEST_F(FtdiLineTest, RemovesTheStatusBytes) {
     return std::string(reinterpret_cast<const char*>(bytes.data()),
                        static_cast<std::size_t>(count));
   };
-  EXPECT_EQ((*line)->read(bytes, 5), 0);  // nothing came
-  usb_.say("");                           // the status bytes alone, as every latency time
+  EXPECT_EQ((*line)->read(bytes, 5), 0);  // nothing received
+  usb_.say("");                           // only the status bytes, as in each latency period
   usb_.say("abcdef");
   EXPECT_EQ(text((*line)->read(bytes, 5)), "abcd");
   EXPECT_EQ(text((*line)->read(bytes, 5)), "ef");

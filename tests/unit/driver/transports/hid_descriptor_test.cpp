@@ -15,7 +15,7 @@ HidReports read(const Bytes& bytes) {
   return read_hid_descriptor(std::as_bytes(std::span(bytes)));
 }
 
-TEST(HidDescriptor, TellsPageUsageAndLengthsOfTheRawExamples) {
+TEST(HidDescriptor, ReadsPageUsageAndLengthsOfRawHid) {
   const HidReports reports = read(support::raw_hid_descriptor(14, 8));
   EXPECT_EQ(reports, (HidReports{.usage_page = 0xffab,
                                  .usage = 0x0200,
@@ -29,7 +29,7 @@ TEST(HidDescriptor, TellsPageUsageAndLengthsOfTheRawExamples) {
 }
 
 TEST(HidDescriptor, SumsTheFieldsOfAKeyboardAndKeepsItsOuterUsage) {
-  // Of the boot keyboard [HID 1.11, appendix B]: 8 bits, 8 bits, 6 bytes in; 5 + 3 bits out.
+  // The boot keyboard [HID 1.11, appendix B]: 8 bits, 8 bits, 6 bytes in; 5 + 3 bits out.
   const std::vector<unsigned char> keyboard = {
       0x05, 0x01, 0x09, 0x06, 0xa1, 0x01, 0x05, 0x07, 0x19, 0xe0, 0x29, 0xe7, 0x75, 0x01, 0x95,
       0x08, 0x81, 0x02, 0x95, 0x01, 0x75, 0x08, 0x81, 0x01, 0x95, 0x05, 0x75, 0x01, 0x91, 0x02,
@@ -44,7 +44,7 @@ TEST(HidDescriptor, SumsTheFieldsOfAKeyboardAndKeepsItsOuterUsage) {
 TEST(HidDescriptor, KeepsTheUsageOfTheOuterCollection) {
   const std::vector<unsigned char> nested = {
       0x06, 0xab, 0xff, 0x0a, 0x00, 0x02, 0xa1, 0x01,  // page ffab, usage 0200: a collection
-      0x05, 0x01, 0x09, 0x06, 0xa1, 0x02,              // page 1, usage 6: a collection within
+      0x05, 0x01, 0x09, 0x06, 0xa1, 0x02,              // page 1, usage 6: a nested collection
       0x75, 0x08, 0x95, 0x08, 0x81, 0x02, 0xc0, 0xc0};
   EXPECT_EQ(read(nested).usage_page, 0xffab);
   EXPECT_EQ(read(nested).usage, 0x0200);
@@ -60,12 +60,12 @@ TEST(HidDescriptor, PassesOverALongItemAndReadsOn) {
   EXPECT_EQ(read(torn).in_bytes, 8u);
 }
 
-TEST(HidDescriptor, SaysThatReportsAreNumbered) {
+TEST(HidDescriptor, DetectsNumberedReports) {
   const std::vector<unsigned char> numbered = {0x85, 0x01, 0x75, 0x08, 0x95, 0x08, 0x81, 0x02};
   EXPECT_TRUE(read(numbered).numbered);
 }
 
-TEST(HidDescriptor, TakesAnyBytesAndSaysNothingBeyond64KB) {
+TEST(HidDescriptor, AcceptsAnyBytesAndBoundsLengthsAt64KB) {
   support::Random random(16);
   for (int i = 0; i < 20'000; ++i) {
     std::vector<unsigned char> bytes(random.bits() % 64);
@@ -74,7 +74,7 @@ TEST(HidDescriptor, TakesAnyBytesAndSaysNothingBeyond64KB) {
     EXPECT_LE(reports.in_bytes, 1u << 16);
     EXPECT_LE(reports.out_bytes, 1u << 16);
   }
-  // Lengths that would overflow: 2^32 - 1 fields of 2^32 - 1 bits, again and again.
+  // Lengths that would overflow: many items of 2^32 - 1 fields of 2^32 - 1 bits.
   std::vector<unsigned char> huge = {0x77, 0xff, 0xff, 0xff, 0xff, 0x97, 0xff, 0xff, 0xff, 0xff};
   for (int i = 0; i < 1000; ++i) huge.insert(huge.end(), {0x81, 0x02});
   EXPECT_EQ(read(huge).in_bytes, 1u << 16);

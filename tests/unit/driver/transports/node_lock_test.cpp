@@ -18,10 +18,10 @@ std::string some_node(const std::string& name) {
   return std::filesystem::canonical(file).string();
 }
 
-/// Another program that has a node open, from `begin` to the end of its life.
+/// Another program that has a node open, from `begin` until it is destroyed.
 class OtherProgram {
  public:
-  /// Opens the node in a child process; with `locks` through NodeLock, as another Thimble does.
+  /// Opens the node in a child process; with `locks` through NodeLock, as another Thimble would.
   OtherProgram(const std::string& node, bool locks) {
     int ready[2];
     if (pipe(ready) != 0) return;
@@ -59,7 +59,7 @@ TEST(NodeLock, LetsOneUseANodeAndGivesItBack) {
   {
     auto first = NodeLock::take(node);
     ASSERT_TRUE(first) << first.error().message;
-    const auto second = NodeLock::take(node);  // by this very program
+    const auto second = NodeLock::take(node);  // by this program
     ASSERT_FALSE(second);
     EXPECT_NE(second.error().message.find("in use"), std::string::npos);
     const NodeLock moved = std::move(first).value();
@@ -68,7 +68,7 @@ TEST(NodeLock, LetsOneUseANodeAndGivesItBack) {
   EXPECT_TRUE(NodeLock::take(node));
 }
 
-TEST(NodeLock, NamesTheProgramThatHasTheNodeWhetherItLocksOrNot) {
+TEST(NodeLock, NamesTheProgramThatHasTheNode) {
   const std::string node = some_node("lock_other");
   for (const bool locks : {true, false}) {
     {
@@ -88,7 +88,7 @@ TEST(NodeLock, NamesTheProgramThatHasTheNodeWhetherItLocksOrNot) {
   }
 }
 
-TEST(NodeLock, SeesWhoHasANodeOnAnyMachine) {
+TEST(NodeLock, FindsTheHolderInAnyRoot) {
   const support::FakeUsb usb("lock_holder");
   usb.write("proc/77/comm", "steam");
   std::filesystem::create_directories(usb.root() / "proc/77/fd");
@@ -100,7 +100,7 @@ TEST(NodeLock, SeesWhoHasANodeOnAnyMachine) {
   EXPECT_FALSE(find_holder("/dev/hidraw4", usb.root()));
 }
 
-TEST(NodeLock, NamesWhatIsWrongWithANode) {
+TEST(NodeLock, OpenErrorNamesTheReason) {
   const auto missing = NodeLock::take("/dev/no_such_arm");
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().message.find("plugged in"), std::string::npos);

@@ -31,7 +31,7 @@ class SerialTransportTest : public ::testing::Test {
   }
   ~SerialTransportTest() override { hang_up(); }
 
-  /// Calls until no signal ends the call.
+  /// Repeats a call until no signal interrupts it.
   static ssize_t unstopped(const std::function<ssize_t()>& call) {
     ssize_t count = 0;
     do count = call();
@@ -75,12 +75,12 @@ class SerialTransportTest : public ::testing::Test {
 TEST_F(SerialTransportTest, CarriesEveryByteUnchangedBothWays) {
   open();
   EXPECT_EQ(write("[1,-2,3]\n"), TransportStatus::kOk);
-  EXPECT_EQ(hear(), "[1,-2,3]\n");  // no newline turned into two, nothing echoed
+  EXPECT_EQ(hear(), "[1,-2,3]\n");  // no newline is doubled, nothing is echoed
   say("[3,1,2,3,4,5,6,0]\n");
   EXPECT_EQ(read(), "[3,1,2,3,4,5,6,0]");
 }
 
-TEST_F(SerialTransportTest, SetsTheRateOfAPortThatIsARealOne) {
+TEST_F(SerialTransportTest, SetsTheBaudRateOfTheDevice) {
   open();
   termios settings{};
   ASSERT_EQ(tcgetattr(far_, &settings), 0);
@@ -88,7 +88,7 @@ TEST_F(SerialTransportTest, SetsTheRateOfAPortThatIsARealOne) {
   EXPECT_EQ(cfgetispeed(&settings), speed_t{B115200});
 }
 
-TEST_F(SerialTransportTest, ForgetsWhatCameBeforeItWasOpened) {
+TEST_F(SerialTransportTest, DropsBytesReceivedBeforeOpening) {
   const int before = ::open(ptsname(far_), O_RDWR | O_NOCTTY);
   ASSERT_GE(before, 0);
   say("[9]\n");
@@ -111,7 +111,7 @@ TEST_F(SerialTransportTest, JoinsPiecesAndTakesTheNewest) {
   EXPECT_EQ(last_.skipped, 2u);
 }
 
-TEST_F(SerialTransportTest, SaysThatTheArmIsGoneWhenThePortHangsUp) {
+TEST_F(SerialTransportTest, HangUpIsALostArm) {
   open();
   hang_up();
   read();
@@ -131,7 +131,7 @@ TEST_F(SerialTransportTest, FullPortRefusesInsteadOfWaiting) {
 
 TEST_F(SerialTransportTest, CompletesAMessageThatWasTorn) {
   open();
-  // The port takes a part of a message when it is nearly full; none may run into the next.
+  // A nearly full port accepts only a part of a message, which must not merge with the next one.
   std::string heard;
   int refused = 0;
   for (int i = 0; i < 20'000 && refused < 300; ++i) {
@@ -145,15 +145,15 @@ TEST_F(SerialTransportTest, CompletesAMessageThatWasTorn) {
   EXPECT_EQ(write("[2]\n"), TransportStatus::kOk);
   EXPECT_EQ(wire_->settled(), TransportStatus::kOk);
   heard += hear();
-  EXPECT_EQ(heard.find("1[1"), std::string::npos) << "a torn message runs into the next";
+  EXPECT_EQ(heard.find("1[1"), std::string::npos) << "a torn message merges with the next";
   ASSERT_GE(heard.size(), 4U);
   EXPECT_EQ(heard.substr(heard.size() - 5), "\n[2]\n");
 }
 
-TEST_F(SerialTransportTest, OutlivesSignals) {
+TEST_F(SerialTransportTest, SurvivesSignals) {
   open();
   struct sigaction noted {};
-  noted.sa_handler = [](int) {};  // and no SA_RESTART
+  noted.sa_handler = [](int) {};  // without SA_RESTART
   struct sigaction before {};
   ASSERT_EQ(sigaction(SIGALRM, &noted, &before), 0);
   const itimerval often{.it_interval = {0, 100}, .it_value = {0, 100}};
@@ -161,7 +161,7 @@ TEST_F(SerialTransportTest, OutlivesSignals) {
   int answered = 0;
   for (int i = 0; i < 500; ++i) {
     if (write("[1,2,3]\n") != TransportStatus::kOk) continue;
-    read(2'000'000);  // nothing comes: it waits under signals
+    read(2'000'000);  // nothing arrives: it waits despite signals
     std::string text = hear();
     const ssize_t said = unstopped([&] { return ::write(far_, text.data(), text.size()); });
     answered += said > 0 && read() == "[1,2,3]" ? 1 : 0;
@@ -173,7 +173,7 @@ TEST_F(SerialTransportTest, OutlivesSignals) {
   EXPECT_NE(last_.status, TransportStatus::kLost);
 }
 
-TEST_F(SerialTransportTest, NamesWhatIsWrongWithANode) {
+TEST_F(SerialTransportTest, OpenErrorNamesTheReason) {
   const auto missing = open_serial_transport("/dev/no_such_arm", hfab::kLineFraming, clock_);
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().message.find("plugged in"), std::string::npos);
@@ -181,7 +181,7 @@ TEST_F(SerialTransportTest, NamesWhatIsWrongWithANode) {
   std::ofstream(file) << "";
   const auto no_port = open_serial_transport(file, hfab::kLineFraming, clock_);
   ASSERT_FALSE(no_port);
-  EXPECT_NE(no_port.error().message.find("no serial port"), std::string::npos);
+  EXPECT_NE(no_port.error().message.find("not a serial port"), std::string::npos);
 }
 
 TEST_F(SerialTransportTest, BelongsToOneUserAtATime) {
@@ -193,7 +193,7 @@ TEST_F(SerialTransportTest, BelongsToOneUserAtATime) {
   open();
 }
 
-TEST_F(SerialTransportTest, SendsNothingByBeingOpened) {
+TEST_F(SerialTransportTest, OpeningSendsNothing) {
   open();
   EXPECT_EQ(hear(), "");
   wire_.reset();

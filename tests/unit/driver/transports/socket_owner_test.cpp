@@ -79,7 +79,7 @@ TEST_P(SocketOwner, HasNoUserOnceClosed) {
   const int client = port.connect_here();
   const int server = port.accept_one();
   close(client);
-  EXPECT_EQ(user_of_peer(server), std::nullopt) << "the kernel lists it as root's";
+  EXPECT_EQ(user_of_peer(server), std::nullopt) << "the kernel lists it as a socket of root";
   EXPECT_NE(distrust_of_peer(server), "");
   close(server);
 }
@@ -115,7 +115,7 @@ TEST_P(SocketOwner, IsOtherUser) {
 }
 
 TEST(SocketOwnerOfMappedAddress, IsFoundFromBothSides) {
-  // A socket of IPv6 that reaches 127.0.0.1, as many programs do.
+  // An IPv6 socket that connects to 127.0.0.1, as many programs do.
   const Port port(AF_INET);
   const int known = port.connect_here();
   sockaddr_in to{};

@@ -28,7 +28,7 @@ class EchoStream final : public StreamTransport {
 
   std::int64_t delay_ns = 300'000;
   bool silent = false, gone = false, full = false;
-  int most_unanswered = 0;  // messages in the arm at once
+  int most_unanswered = 0;  // unanswered messages at the same time
   std::vector<std::string> heard;
 
  private:
@@ -86,7 +86,7 @@ TEST_F(StreamTransportTest, ReadsTheAnswerToThePreviousTick) {
     EXPECT_EQ(last_.skipped, 0u);
     const std::int64_t before_ns = clock_.now_ns();
     EXPECT_EQ(write(), TransportStatus::kOk);
-    EXPECT_EQ(clock_.now_ns(), before_ns);  // no waiting when the answer was there
+    EXPECT_EQ(clock_.now_ns(), before_ns);  // no waiting if the answer has arrived
   }
   EXPECT_EQ(wire_.most_unanswered, 1);
   EXPECT_EQ(wire_.counters().unanswered, 0u);
@@ -103,7 +103,7 @@ TEST_F(StreamTransportTest, WaitsForALateAnswer) {
     write();
     longest_ns = std::max(longest_ns, clock_.now_ns() - before_ns);
   }
-  EXPECT_EQ(longest_ns, 300'000);  // just until the answer
+  EXPECT_EQ(longest_ns, 300'000);  // only until the answer
   EXPECT_EQ(wire_.most_unanswered, 1);
   EXPECT_EQ(wire_.counters().unanswered, 0u);
 }
@@ -121,11 +121,11 @@ TEST_F(StreamTransportTest, WaitsForASilentArmOnlyOnce) {
     waited_ns += clock_.now_ns() - before_ns;
   }
   EXPECT_EQ(waited_ns, StreamTransport::kTurn_ns);
-  EXPECT_EQ(wire_.heard.size(), 21u);  // not one message was held back
+  EXPECT_EQ(wire_.heard.size(), 21u);  // no message was delayed
   EXPECT_EQ(wire_.counters().unanswered, 20u);
 }
 
-TEST_F(StreamTransportTest, GoesOnAfterALostAnswer) {
+TEST_F(StreamTransportTest, ContinuesAfterALostAnswer) {
   wire_.silent = true;
   write();
   wire_.silent = false;
@@ -157,7 +157,7 @@ TEST_F(StreamTransportTest, StaysLostOnceTheWireIsGone) {
   EXPECT_EQ(write(), TransportStatus::kLost);
 }
 
-TEST_F(StreamTransportTest, PassesARefusalOn) {
+TEST_F(StreamTransportTest, ForwardsARefusal) {
   wire_.full = true;
   EXPECT_EQ(write(), TransportStatus::kRefused);
 }

@@ -1,5 +1,5 @@
-// The wires to real arms over scripted libraries: what a bus may do that a virtual machine cannot
-// time, and that no wire asks the heap for anything once it is open.
+// The wires to real arms over scripted libraries: bus events that a virtual machine cannot time,
+// and no allocation by any wire after it is opened.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <libusb-1.0/libusb.h>
@@ -53,7 +53,7 @@ class FtdiWire : public ::testing::Test {
   TransportRead last_;
 };
 
-TEST_F(FtdiWire, AsksTheHeapForNothingOnceItIsOpen) {
+TEST_F(FtdiWire, DoesNotAllocateAfterOpening) {
   usb_.answers = true;
   usb_.answer = "<aaaabbbbccccdd>";
   open();
@@ -73,7 +73,7 @@ TEST_F(FtdiWire, AsksTheHeapForNothingOnceItIsOpen) {
       kMessage);
 }
 
-TEST_F(FtdiWire, AsksTheHeapForNothingWhenTheArmFails) {
+TEST_F(FtdiWire, DoesNotAllocateWhenTheArmFails) {
   open();
   for (int i = 0; i < 500; ++i) usb_.say(i % 3 == 0 ? "<torn" : "no message");
   for (int i = 0; i < 5; ++i) usb_.fail(LIBUSB_TRANSFER_STALL);
@@ -89,11 +89,11 @@ TEST_F(FtdiWire, AsksTheHeapForNothingWhenTheArmFails) {
   EXPECT_EQ(last_.status, TransportStatus::kLost);
 }
 
-TEST_F(FtdiWire, JoinsAMessageThatCameInTwoPacketsAndTakesTheNewest) {
+TEST_F(FtdiWire, JoinsPacketsAndReturnsTheNewestMessage) {
   open();
   usb_.say("noise<01234");
   usb_.say("56789>");
-  usb_.say("");  // a packet of status alone
+  usb_.say("");  // a packet with only status bytes
   EXPECT_EQ(read(), "<0123456789>");
   usb_.say("<1><2>");
   usb_.say("<3>");
@@ -103,7 +103,7 @@ TEST_F(FtdiWire, JoinsAMessageThatCameInTwoPacketsAndTakesTheNewest) {
   EXPECT_EQ(last_.status, TransportStatus::kNothing);
 }
 
-TEST_F(FtdiWire, OutlivesSomeBadReadsAndNamesManyInARowALostArm) {
+TEST_F(FtdiWire, ManyFailedReadsInARowAreALostArm) {
   open();
   for (const int status : {LIBUSB_TRANSFER_STALL, LIBUSB_TRANSFER_OVERFLOW, LIBUSB_TRANSFER_ERROR,
                            LIBUSB_TRANSFER_TIMED_OUT}) {
@@ -119,7 +119,7 @@ TEST_F(FtdiWire, OutlivesSomeBadReadsAndNamesManyInARowALostArm) {
   EXPECT_EQ(write(), TransportStatus::kLost);
 }
 
-TEST_F(FtdiWire, SaysThatAPulledArmIsGone) {
+TEST_F(FtdiWire, DisconnectedArmIsLost) {
   open();
   usb_.fail(LIBUSB_TRANSFER_NO_DEVICE);
   read();
@@ -127,7 +127,7 @@ TEST_F(FtdiWire, SaysThatAPulledArmIsGone) {
   EXPECT_EQ(write(), TransportStatus::kLost);
 }
 
-TEST_F(FtdiWire, SeesInAWriteThatTheArmIsGone) {
+TEST_F(FtdiWire, WriteDetectsALostArm) {
   open();
   usb_.submit_code = LIBUSB_ERROR_NO_DEVICE;
   EXPECT_EQ(write(), TransportStatus::kLost);
@@ -148,7 +148,7 @@ TEST_F(FtdiWire, RefusesAThirdPendingMessage) {
   EXPECT_EQ(write(), TransportStatus::kRefused);
 }
 
-TEST_F(FtdiWire, ReportsWhatBecameOfTheLastMessage) {
+TEST_F(FtdiWire, ReportsTheResultOfTheLastMessage) {
   open();
   EXPECT_EQ(wire_->settled(), TransportStatus::kOk);
   usb_.takes = false;
@@ -157,11 +157,11 @@ TEST_F(FtdiWire, ReportsWhatBecameOfTheLastMessage) {
   usb_.takes = true;
   EXPECT_EQ(wire_->settled(), TransportStatus::kOk);
   usb_.write_status = LIBUSB_TRANSFER_STALL;
-  EXPECT_EQ(write(), TransportStatus::kOk) << "it is known later that it failed";
+  EXPECT_EQ(write(), TransportStatus::kOk) << "its failure is known only later";
   EXPECT_EQ(wire_->settled(), TransportStatus::kRefused);
   usb_.write_status = 0;
   EXPECT_EQ(write(), TransportStatus::kRefused);
-  EXPECT_EQ(wire_->settled(), TransportStatus::kOk) << "it was handed over all the same";
+  EXPECT_EQ(wire_->settled(), TransportStatus::kOk) << "it was handed to the bus nevertheless";
   usb_.takes = false;
   write();
   usb_.fail(LIBUSB_TRANSFER_NO_DEVICE);
@@ -169,7 +169,7 @@ TEST_F(FtdiWire, ReportsWhatBecameOfTheLastMessage) {
   EXPECT_EQ(wire_->settled(), TransportStatus::kLost);
 }
 
-TEST_F(FtdiWire, OutlivesSignals) {
+TEST_F(FtdiWire, SurvivesSignals) {
   usb_.answers = true;
   usb_.answer = "<ok>";
   open();
@@ -184,7 +184,7 @@ TEST_F(FtdiWire, OutlivesSignals) {
   EXPECT_EQ(usb_.under_way, 0);
 }
 
-TEST_F(FtdiWire, LeavesNothingOpenOrUnderWay) {
+TEST_F(FtdiWire, ClosesAndCancelsEverything) {
   for (const bool takes : {true, false}) {
     usb_.reset();
     usb_.takes = takes;
@@ -201,12 +201,12 @@ TEST_F(FtdiWire, LeavesNothingOpenOrUnderWay) {
   }
 }
 
-TEST_F(FtdiWire, ClearsWhatTheProgramBeforeLeftHalted) {
+TEST_F(FtdiWire, ClearsHaltedEndpoints) {
   open();
   EXPECT_EQ(usb_.cleared_halts, 2);
 }
 
-TEST_F(FtdiWire, NamesWhatKeepsItFromOpening) {
+TEST_F(FtdiWire, OpenErrorNamesTheReason) {
   const auto message = [this](int code) {
     usb_.open_code = code;
     const auto line = FtdiLine::open({.bus = 1, .device = 7});
@@ -245,7 +245,7 @@ class HidWire : public ::testing::Test {
   std::array<std::byte, 64> buffer_{};
 };
 
-TEST_F(HidWire, AsksTheHeapForNothingOnceItIsOpen) {
+TEST_F(HidWire, DoesNotAllocateAfterOpening) {
   int read = 0;
   const int calls = support::heap_calls_of([&] {
     for (int tick = 0; tick < 2000; ++tick) {
@@ -294,7 +294,7 @@ TEST_F(HidWire, WaitsForWholeMillisecondsWithinTheDeadline) {
   EXPECT_EQ(hid_.last_timeout_ms, 0);
 }
 
-TEST_F(HidWire, PutsTheReportIdInFrontAndFillsUpWithZeros) {
+TEST_F(HidWire, PrependsTheReportIdAndPadsWithZeros) {
   EXPECT_EQ(wire_->write(bytes_of("12345678")), TransportStatus::kOk);
   ASSERT_EQ(hid_.last_message_size, 15u);
   EXPECT_EQ(hid_.last_message[0], 0);
@@ -302,7 +302,7 @@ TEST_F(HidWire, PutsTheReportIdInFrontAndFillsUpWithZeros) {
   EXPECT_EQ(hid_.last_message[9], 0);
 }
 
-TEST_F(HidWire, TellsARefusalFromALostArm) {
+TEST_F(HidWire, DistinguishesARefusalFromALostArm) {
   for (const int error : {EPIPE, ETIMEDOUT, EAGAIN, EPROTO}) {
     hid_.write_error = error;
     EXPECT_EQ(wire_->write(bytes_of("12345678")), TransportStatus::kRefused) << error;
@@ -314,7 +314,7 @@ TEST_F(HidWire, TellsARefusalFromALostArm) {
   EXPECT_EQ(wire_->read_latest(buffer_, 0).status, TransportStatus::kLost);
 }
 
-TEST_F(HidWire, OutlivesSignals) {
+TEST_F(HidWire, SurvivesSignals) {
   for (int interruptions = 1; interruptions <= 5; ++interruptions) {
     hid_.interruptions = interruptions;
     hid_.reports = 2;
@@ -331,25 +331,25 @@ TEST_F(HidWire, IsNotLostInAStormOfSignals) {
   hid_.interruptions = 1'000'000;
   EXPECT_EQ(wire_->read_latest(buffer_, 5'000'000).status, TransportStatus::kNothing);
   EXPECT_EQ(wire_->write(bytes_of("12345678")), TransportStatus::kRefused);
-  EXPECT_GT(hid_.interruptions, 999'000) << "the loop is not held up";
+  EXPECT_GT(hid_.interruptions, 999'000) << "the loop is not delayed";
   hid_.interruptions = 0;
   hid_.reports = 1;
   EXPECT_EQ(wire_->read_latest(buffer_, 0).status, TransportStatus::kOk);
 }
 
-TEST_F(HidWire, IsNotOpenedWithMessagesOfALengthThatTheArmThrowsAway) {
+TEST_F(HidWire, RefusesToOpenWithAnotherMessageLength) {
   wire_.reset();
   EXPECT_NE(refusal(64).find("takes messages of 14 bytes, but this arm's are 64"),
             std::string::npos);
   EXPECT_NE(refusal(8), "");
   hid_.report_bytes = 0;
-  EXPECT_NE(refusal(14).find("no HID device"), std::string::npos);
+  EXPECT_NE(refusal(14).find("not a usable HID device"), std::string::npos);
   EXPECT_EQ(hid_.open, 0);
   EXPECT_EQ(hid_.messages, 0u);
 }
 
-TEST_F(HidWire, RefusesAMessageOfALengthThatTheArmThrowsAway) {
-  open(0);  // messages as they are
+TEST_F(HidWire, RefusesAMessageOfAnotherLength) {
+  open(0);  // messages are sent unchanged
   EXPECT_EQ(wire_->write(bytes_of("12345678")), TransportStatus::kRefused);
   EXPECT_EQ(hid_.messages, 0u);
   EXPECT_EQ(wire_->write(bytes_of("12345678901234")), TransportStatus::kOk);
@@ -366,7 +366,7 @@ TEST_F(HidWire, ListensToAWoodenHapticsBoardBeforeItSendsAnything) {
   hid_.report_bytes = 8;
   open(8);
   hid_.coming = 1000;
-  EXPECT_FALSE(woody::listen_for_board(*wire_, WallClock()));  // numbers in the wrong place
+  EXPECT_FALSE(woody::listen_for_board(*wire_, WallClock()));  // numbers at the wrong position
   hid_.coming = 1000;
   hid_.numbered_last = true;
   EXPECT_TRUE(woody::listen_for_board(*wire_, WallClock()));
@@ -379,7 +379,7 @@ TEST_F(HidWire, ClosesItsDevice) {
   EXPECT_EQ(hid_.open, 0);
 }
 
-TEST(SerialWire, AsksTheHeapForNothingOnceItIsOpen) {
+TEST(SerialWire, DoesNotAllocateAfterOpening) {
   const int far = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
   if (far < 0 || grantpt(far) != 0 || unlockpt(far) != 0) GTEST_SKIP() << "no pseudo-terminals";
   const WallClock clock;

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Whether a link takes `Force` as the force to send.
+/// True if a link accepts `Force` as the force to send.
 template <class Force>
 constexpr bool takes(const Force* = nullptr) {
   return requires(ArmLink & link, const Force& force, const ArmSample& sample, const Matrix3d& R) {
@@ -27,12 +27,13 @@ constexpr bool takes(const Force* = nullptr) {
   };
 }
 
-TEST(ArmLink, TakesNoForceThatDidNotPassTheGate) {
+TEST(ArmLink, AcceptsOnlyForcesFromTheGate) {
   static_assert(takes<GatedForce>());
   static_assert(!takes<Vector3d>());
   static_assert(!takes<ForceCommand>());
   static_assert(!takes<MotorCurrents>());
-  // Nobody but the gate can make one that is not zero, neither from a force nor from another one.
+  // Only the gate can create a gated force that is not zero, neither from a force nor from another
+  // gated force.
   static_assert(!std::is_constructible_v<GatedForce, Vector3d>);
   static_assert(!std::is_convertible_v<Vector3d, GatedForce>);
   static_assert(!std::is_aggregate_v<GatedForce>);
@@ -40,7 +41,7 @@ TEST(ArmLink, TakesNoForceThatDidNotPassTheGate) {
   EXPECT_TRUE(GatedForce().f_T_W().isZero(0));
 }
 
-/// A device whose arm gives poses and takes forces, and stands turned by 90 degrees.
+/// A device whose arm reports poses and accepts forces; its base is rotated by 90 degrees.
 class PoseArmTest : public ::testing::Test {
  protected:
   DeviceSettings settings() const {
@@ -79,7 +80,7 @@ class PoseArmTest : public ::testing::Test {
   std::int64_t ticks_ = 0;
 };
 
-TEST_F(PoseArmTest, TellsALawWhatTheArmMeasuresInTheWorld) {
+TEST_F(PoseArmTest, LawGetsMeasuredValuesInTheWorldFrame) {
   arm_.R_BT = Eigen::AngleAxisd(0.3, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   arm_.p_BH = {0.01, 0, 0};
   arm_.buttons = 5;
@@ -89,7 +90,7 @@ TEST_F(PoseArmTest, TellsALawWhatTheArmMeasuresInTheWorld) {
   const DeviceState& state = device_->state();
   const Matrix3d R_WB = settings().R_WB;
   EXPECT_LT((state.p_WT - (Vector3d(0.1, 0.2, 0.3) + R_WB * arm_.p_BT)).norm(), 1e-15);
-  // Its own velocity, and not a difference of positions.
+  // The velocity of the arm, not a difference of positions.
   EXPECT_GT(arm_.v_BT.norm(), 0.05);
   EXPECT_LT((state.v_WT - R_WB * arm_.v_BT).norm(), 1e-15);
   EXPECT_TRUE(state.has_orientation);
@@ -99,17 +100,17 @@ TEST_F(PoseArmTest, TellsALawWhatTheArmMeasuresInTheWorld) {
   EXPECT_FLOAT_EQ(state.gripper, 0.012F);
   EXPECT_EQ(state.buttons, 5);
   EXPECT_EQ(state.q, Vector3d(0, 0, 0));
-  // Positions stand for counts, in steps of a micrometre.
+  // Positions replace counts, in steps of a micrometre.
   EXPECT_NEAR(state.counts[0], arm_.p_BT.x() * 1e6, 0.5);
 }
 
-TEST_F(PoseArmTest, GetsTheGatedForceInItsBaseAndItsOwnLimitIsTold) {
+TEST_F(PoseArmTest, GetsGatedForceInItsBaseAndReportsScale) {
   open(settings());
   ticks(400, {0, 1, 0});
-  // World y is the arm's x.
+  // The world's y axis is the arm's x axis.
   EXPECT_LT((arm_.f_T_B - Vector3d(1, 0, 0)).norm(), 1e-12);
   EXPECT_LT((device_->f_sent_W() - Vector3d(0, 1, 0)).norm(), 1e-12);
-  // The gate cuts at 5 N, the arm at 3 N.
+  // The gate limits to 5 N, the arm to 3 N.
   arm_.p_BH = {0, 0, 0.001};
   ticks(100, {0, 0, -7});
   EXPECT_NEAR(arm_.f_T_B.norm(), 3, 1e-12);
@@ -123,7 +124,7 @@ TEST_F(PoseArmTest, OpensSoftlyAndSendsZeroWheneverItIsIdle) {
   EXPECT_TRUE(arm_.taken_B.front().isZero(0));
   tick({0, 4, 0});
   tick({0, 4, 0});
-  EXPECT_LT(arm_.f_T_B.norm(), 0.1);  // 5 N open in 0.3 s
+  EXPECT_LT(arm_.f_T_B.norm(), 0.1);  // the soft start reaches 5 N in 0.3 s
   ticks(400, {0, 4, 0});
   EXPECT_GT(arm_.f_T_B.norm(), 2.9);
   device_->deactivate();
@@ -131,7 +132,7 @@ TEST_F(PoseArmTest, OpensSoftlyAndSendsZeroWheneverItIsIdle) {
   EXPECT_TRUE(device_->zero_assured());
 }
 
-TEST_F(PoseArmTest, GoesOffByNameWhenItIsLostSilentOrRefuses) {
+TEST_F(PoseArmTest, LostSilentOrRefusingArmHasItsFault) {
   const auto trouble = [&](bool support::PoseArm::*kind) {
     device_.reset();
     arm_ = arm_from_now();
@@ -146,9 +147,9 @@ TEST_F(PoseArmTest, GoesOffByNameWhenItIsLostSilentOrRefuses) {
   EXPECT_TRUE(device_->lost());
   EXPECT_TRUE(device_->f_sent_W().isZero(0));
   EXPECT_EQ(trouble(&support::PoseArm::silent), Fault::kNoReports);
-  EXPECT_TRUE(arm_.f_T_B.isZero(0)) << "a silent arm still hears";
+  EXPECT_TRUE(arm_.f_T_B.isZero(0)) << "a silent arm still gets zero force";
   EXPECT_EQ(trouble(&support::PoseArm::refuses), Fault::kRefused);
-  // What it did not take leaves the force before it standing, and that is told.
+  // After a refused message the previous force still acts, and it is reported.
   EXPECT_NEAR(arm_.f_T_B.norm(), 1, 1e-9);
   EXPECT_NEAR(device_->f_sent_W().norm(), 1, 1e-9);
   EXPECT_FALSE(device_->zero_assured());
@@ -157,9 +158,9 @@ TEST_F(PoseArmTest, GoesOffByNameWhenItIsLostSilentOrRefuses) {
   EXPECT_TRUE(arm_.f_T_B.isZero(0));
 }
 
-TEST_F(PoseArmTest, IsNoticedWhenItTellsOldPositionsUnderAForce) {
+TEST_F(PoseArmTest, OldPositionsUnderAForceAreDetected) {
   open(settings());
-  arm_.p_BH = {0.05, 0, 0};  // a stroke
+  arm_.p_BH = {0.05, 0, 0};  // a hand motion
   ticks(60, {0, 0, 0.5});
   ticks(40, {0, 0, 1});
   EXPECT_GT(arm_.v_BT.norm(), 0.2);
@@ -168,16 +169,16 @@ TEST_F(PoseArmTest, IsNoticedWhenItTellsOldPositionsUnderAForce) {
   EXPECT_EQ(device_->fault(), Fault::kCountsUnchanged);
 }
 
-TEST_F(PoseArmTest, HoldsTheLimitOfSpeedForWhatItDidAndForWhatItSays) {
+TEST_F(PoseArmTest, SpeedLimitCoversTheReportedSpeed) {
   open(settings());
   ticks(10, {0, 0, 0});
-  arm_.v_BT = {4, 0, 0};  // says so, beyond 3 m/s
+  arm_.v_BT = {4, 0, 0};  // reported by the arm, beyond 3 m/s
   arm_.stiffness = arm_.damping = 0;
   ticks(2, {0, 0, 0});
   EXPECT_EQ(device_->fault(), Fault::kOverSpeed);
 }
 
-TEST_F(PoseArmTest, HoldsTheLimitOfSpeedOfATipThatSaysItStands) {
+TEST_F(PoseArmTest, SpeedLimitHoldsIfTheArmReportsZeroSpeed) {
   arm_.says_still = true;
   arm_.stiffness = arm_.damping = 0;
   open(settings());
@@ -192,7 +193,7 @@ TEST_F(PoseArmTest, HoldsTheLimitOfSpeedOfATipThatSaysItStands) {
   EXPECT_TRUE(device_->state().v_WT.isZero(0));
 }
 
-TEST_F(PoseArmTest, IsSwitchedOffIfItsOrientationIsNoNumber) {
+TEST_F(PoseArmTest, OrientationThatIsNotFiniteIsAFault) {
   open(settings());
   ticks(10, {0, 0, 0});
   const Matrix3d before = device_->state().R_WT;
@@ -203,7 +204,7 @@ TEST_F(PoseArmTest, IsSwitchedOffIfItsOrientationIsNoNumber) {
   EXPECT_TRUE(arm_.f_T_B.isZero(0));
 }
 
-TEST_F(PoseArmTest, ComesBackOverANewLinkToTheSameArmAndToNoOther) {
+TEST_F(PoseArmTest, ReturnsOnlyThroughALinkToTheSameArm) {
   open(settings());
   ticks(350, {0, 1, 0});
   arm_.lost = true;
@@ -215,36 +216,37 @@ TEST_F(PoseArmTest, ComesBackOverANewLinkToTheSameArmAndToNoOther) {
       std::make_unique<WireLink>(std::make_unique<support::ScriptedTransport>(wire),
                                  std::make_unique<hfab::HfabArm>(support::vintage_model())));
   ASSERT_FALSE(other);
-  EXPECT_NE(other.error().message.find("not the one that was pulled"), std::string::npos);
+  EXPECT_NE(other.error().message.find("differs from the one that was disconnected"),
+            std::string::npos);
 
   support::PoseArm again = arm_from_now();
   ASSERT_TRUE(device_->offer(std::make_unique<support::PoseLink>(again, clock_)));
   ticks(3, {0, 1, 0});
   EXPECT_FALSE(device_->lost());
   EXPECT_EQ(device_->wire_counters().replugged, 1u);
-  EXPECT_TRUE(again.f_T_B.isZero(0)) << "nobody asked for force yet";
+  EXPECT_TRUE(again.f_T_B.isZero(0)) << "no force was requested yet";
   device_->ask_to_activate();
   ticks(400, {0, 1, 0});
   EXPECT_NEAR(again.f_T_B.norm(), 1, 1e-9);
   EXPECT_EQ(device_->fault(), Fault::kNone);
-  device_.reset();  // before the arm that it ends with
+  device_.reset();  // before the arm, which it uses in its destructor
 }
 
-TEST_F(PoseArmTest, HasNoHeatThatAnybodyCouldKnow) {
+TEST_F(PoseArmTest, RefusesHeatSettingsWithoutMotors) {
   DeviceSettings warm = settings();
   warm.heat = {.continuous_current = {1, 1, 1}, .time_constant = {60, 60, 60}};
   const auto opened = Device::open(std::make_unique<support::PoseLink>(arm_, clock_), warm, 0);
   ASSERT_FALSE(opened);
-  EXPECT_NE(opened.error().message.find("keeps its motors to itself"), std::string::npos);
+  EXPECT_NE(opened.error().message.find("does not report its motor currents"), std::string::npos);
 }
 
-TEST_F(PoseArmTest, BooksWhatItsForceDidToTheHand) {
-  // A wall that gives energy: its spring is stiffer on the way out. Force times way of the arm that
-  // holds its force is what the gate's account must come to.
+TEST_F(PoseArmTest, AccountsForTheWorkOnTheHand) {
+  // A wall that gives energy: its spring is stiffer on the way out. The account of the gate must
+  // equal the force of the arm times its displacement.
   DeviceSettings guarded = settings();
   guarded.energy = {.stage = EnergyStage::kPassivity,
                     .mass = 0.1,
-                    .allowance = 1,  // only booked
+                    .allowance = 1,  // only recorded
                     .reservoir = 10};
   open(guarded);
   ticks(310, {0, 0, 0});
@@ -257,11 +259,11 @@ TEST_F(PoseArmTest, BooksWhatItsForceDidToTheHand) {
     work += held.dot(arm_.p_BT - before);
   }
   ASSERT_EQ(device_->fault(), Fault::kNone);
-  EXPECT_GT(work, 0.001) << "this test could not fail";
+  EXPECT_GT(work, 0.001) << "without this work the test could not fail";
   EXPECT_NEAR(device_->gate().energy(), -work, 1e-9);
 }
 
-TEST_F(PoseArmTest, IsDampedByTheEnergyStageAsAnyArm) {
+TEST_F(PoseArmTest, EnergyStageDampsItLikeAnyArm) {
   const auto given = [&](EnergyStage stage) {
     device_.reset();
     arm_ = arm_from_now();
@@ -278,7 +280,7 @@ TEST_F(PoseArmTest, IsDampedByTheEnergyStageAsAnyArm) {
     double work = 0;
     for (int i = 0; i < 1500; ++i) {
       const Vector3d before = arm_.p_BT, held = arm_.f_T_B;
-      // Late by a few ticks and stiff: an active wall.
+      // Stiff and delayed by a few ticks: an active wall.
       const double z = device_->state().p_WT.z() - 0.3;
       const double away = device_->state().v_WT.z() > 0 ? 900 : 200;
       tick({0, 0, z < 0 ? -away * z : 0});

@@ -37,7 +37,7 @@ class DhdLinkTest : public VendorLinkTest<ForceDimension> {
   }
 };
 
-TEST_F(DhdLinkTest, TellsPoseGripperAndButtonsAndGivesTheGatedForce) {
+TEST_F(DhdLinkTest, ReadsPoseGripperAndButtonsAndSendsForce) {
   EXPECT_EQ(library_.version, "3.17.5");
   mock_->wrist = mock_->gripper = true;
   mock_->arm.R_BT = Eigen::AngleAxisd(0.3, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
@@ -56,7 +56,7 @@ TEST_F(DhdLinkTest, TellsPoseGripperAndButtonsAndGivesTheGatedForce) {
   device_.reset();
   EXPECT_EQ(mock_->taken.back(), Vector3d(0, 0, 0));
   EXPECT_EQ(mock_->stopped, 1);
-  EXPECT_EQ(mock_->found_zero, 0) << "nobody said that it may move";
+  EXPECT_EQ(mock_->found_zero, 0) << "the user has not allowed it to move";
 }
 
 TEST_F(DhdLinkTest, UncalibratedArmGetsNoForceOrMotion) {
@@ -71,18 +71,18 @@ TEST_F(DhdLinkTest, UncalibratedArmGetsNoForceOrMotion) {
   ASSERT_NO_FATAL_FAILURE(open());
 }
 
-TEST_F(DhdLinkTest, SaysWhyAnArmCannotBeOpened) {
+TEST_F(DhdLinkTest, OpenErrorNamesTheReason) {
   const auto message = [&] {
     const auto link = dhd::open_link(library_, clock_);
     return link ? std::string() : link.error().message;
   };
   mock_->arms = 0;
-  EXPECT_NE(message().find("finds no arm"), std::string::npos);
+  EXPECT_NE(message().find("found no arm"), std::string::npos);
   mock_->arms = 2;
-  EXPECT_NE(message().find("finds 2 arms"), std::string::npos);
+  EXPECT_NE(message().find("found 2 arms"), std::string::npos);
   mock_->arms = 1;
   mock_->held = true;
-  EXPECT_NE(message().find("told to fail"), std::string::npos);
+  EXPECT_NE(message().find("failure requested by the test"), std::string::npos);
   mock_->held = false;
   for (const char* step :
        {"dhdSetWatchdog", "dhdSetGravityCompensation", "dhdSetBrakes", "dhdEnableForce"}) {
@@ -106,12 +106,12 @@ TEST_F(DhdLinkTest, NamesEachFaultOfTheLibraryAndLatchesZeroForce) {
   const auto late = [](Mock& mock) { mock.late = true; };
   const auto trip = [](Mock& mock) { mock.tripped = true; };
   const FaultRow rows[] = {
-      {"library says error: position", failing("dhdGetPosition"), Fault::kNoReports, 1},
-      {"library says error: velocity", failing("dhdGetLinearVelocity"), Fault::kNoReports, 1},
+      {"library reports error: position", failing("dhdGetPosition"), Fault::kNoReports, 1},
+      {"library reports error: velocity", failing("dhdGetLinearVelocity"), Fault::kNoReports, 1},
       {"NaN from the library", nan, Fault::kNoReports, 1},
       {"library answers 60 ms late", late, Fault::kNoReports, 3},
-      {"library takes no force", failing("dhdSetForce"), Fault::kTransportLost, 0},
-      // It is asked every 32nd time, and what it takes meanwhile goes to no motor.
+      {"library rejects the force", failing("dhdSetForce"), Fault::kTransportLost, 0},
+      // The state is queried every 32nd time; forces accepted meanwhile reach no motor.
       {"library switched the forces off", trip, Fault::kRefused, 200}};
   expect_latched_zero(rows, 30'000'000);
 }
@@ -126,17 +126,17 @@ TEST_F(DhdLinkTest, ReplugMayOpenTheNewLinkFirst) {
 
 TEST_F(DhdLinkTest, OneLinkOwnsTheLibrary) {
   expect_one_owner();
-  EXPECT_FALSE(dhd::find_zero(library_)) << "the arm would be closed at its end";
+  EXPECT_FALSE(dhd::find_zero(library_)) << "its end would close the arm";
 }
 
-TEST_F(DhdLinkTest, ALoopThatStandsStillLosesItsForce) {
+TEST_F(DhdLinkTest, StalledLoopLosesItsForce) {
   ASSERT_NO_FATAL_FAILURE(open());
   ASSERT_TRUE(ticks_until({0.6, 0, 0}, [&] { return device_->f_sent_W().x() > 0.5; }));
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   EXPECT_EQ(force_of_arm(), Vector3d(0, 0, 0));
 }
 
-TEST_F(DhdLinkTest, AsksNothingOfTheHeapOnTheServoThread) {
+TEST_F(DhdLinkTest, DoesNotAllocateOnTheServoThread) {
   ASSERT_NO_FATAL_FAILURE(open());
   int calls = 0, ticks = 100;
   ticks_until({0.1, 0, 0}, [&] {

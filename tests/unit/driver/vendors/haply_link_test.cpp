@@ -24,12 +24,12 @@ using support::HaplyLog;
 using support::HaplyMischief;
 using support::MockHaplyService;
 
-// The service lives in a thread of its own, on a machine that may be busy: nothing here passes by
-// being quick, and a fault may take its time.
+// The service has its own thread, on a machine that may be busy: no test depends on speed, and a
+// fault may be late.
 constexpr std::int64_t kPatient_ns = 2'000'000'000;
 
-/// How long a tick waits for what the service does about it: nothing, where a message before has
-/// not been answered.
+/// Time for which a tick waits for the reaction of the service: none if an earlier message has not
+/// been answered.
 constexpr auto kServed = std::chrono::milliseconds(10);
 
 class HaplyLinkTest : public ::testing::Test {
@@ -63,8 +63,8 @@ class HaplyLinkTest : public ::testing::Test {
     ASSERT_TRUE(device_->activate());
   }
 
-  /// Runs a tick of a millisecond, and lets the service deal with its message. Returns how often
-  /// the servo's part of it asked something of the heap.
+  /// Runs a tick of a millisecond and waits until the service has handled its message. Returns the
+  /// number of allocations of the servo thread.
   int tick(const Vector3d& f_T_W) {
     const std::uint64_t before = service_ ? service_->dealt_with() : 0;
     clock_.sleep_until_ns(clock_.now_ns() + 1'000'000);
@@ -80,7 +80,7 @@ class HaplyLinkTest : public ::testing::Test {
     return calls;
   }
 
-  /// Runs ticks until `done`, or so many that something is wrong.
+  /// Runs ticks until `done`, up to a maximum number.
   template <class Done>
   bool ticks_until(const Vector3d& f_T_W, Done&& done) {
     for (int i = 0; i < 10'000; ++i) {
@@ -93,8 +93,8 @@ class HaplyLinkTest : public ::testing::Test {
     ticks_until(f_T_W, [&] { return --count <= 0; });
   }
 
-  /// Returns what the service's mischief is named, once a force stands; and how many forces it had
-  /// taken before.
+  /// Starts a fault of the service while a force acts. Returns the resulting fault and the number
+  /// of forces accepted before.
   Fault fault_of(HaplyMischief mischief, std::size_t& before) {
     greet();
     open(50'000'000);
@@ -123,13 +123,13 @@ TEST_F(HaplyLinkTest, SendsTheGatedForceInTheBaseFrame) {
       return (device_->f_sent_W() - Vector3d(0.4, 0, 0)).norm() < 1e-9 &&
              device_->wire_counters().reports > 300;
     }));
-    // World x is minus y of the service; the soft start is over.
+    // The world's x axis is minus the y axis of the service; the soft start is over.
     const HaplyLog log = service_->log();
     EXPECT_EQ(log.wrong, 0);
     ASSERT_FALSE(log.taken_B.empty());
     EXPECT_LT((log.taken_B.back() - Vector3d(0, -0.4, 0)).norm(), 1e-6);
     EXPECT_EQ(log.taken_B.front(), Vector3d(0, 0, 0)) << "the first message is zero force";
-    // The hand of 300 N/m yields to it, towards minus y.
+    // The hand of 300 N/m yields to the force, towards minus y.
     const double yielded = -0.13 - 0.4 / 300;
     EXPECT_NEAR(log.p_BT.y(), yielded, 2e-4);
     EXPECT_LT((device_->state().p_WT -
@@ -140,25 +140,25 @@ TEST_F(HaplyLinkTest, SendsTheGatedForceInTheBaseFrame) {
     EXPECT_LT(
         (settings(0).p_WB + settings(0).R_WB * device_->state().q - device_->state().p_WT).norm(),
         1e-12)
-        << "the axes of the base stand for joints";
+        << "the axes of the base are used as joints";
     EXPECT_FALSE(device_->state().has_orientation);
     EXPECT_FALSE(device_->traits().motors.has_value());
     device_.reset();
   }
 }
 
-TEST_F(HaplyLinkTest, TellsHowTheGripIsTurned) {
+TEST_F(HaplyLinkTest, ReportsTheOrientationOfTheGrip) {
   greet(HaplyGreeting::kWithGrip);
   ASSERT_NO_FATAL_FAILURE(open());
   ticks(50, {0, 0, 0});
   ASSERT_TRUE(device_->state().has_orientation);
-  // A quarter turn of the grip, and one of the base.
+  // A quarter turn of the grip and a quarter turn of the base.
   const Matrix3d half = Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitZ()).toRotationMatrix();
   EXPECT_LT((device_->state().R_WT - half).norm(), 1e-5);
   EXPECT_EQ(device_->state().buttons, 2);
 }
 
-TEST_F(HaplyLinkTest, EndsWithZeroForceAndClosesAsItShould) {
+TEST_F(HaplyLinkTest, EndsWithZeroForceAndAWebSocketClose) {
   greet();
   ASSERT_NO_FATAL_FAILURE(open());
   ASSERT_TRUE(ticks_until({0.4, 0, 0}, [&] { return device_->f_sent_W().x() > 0.3; }));
@@ -184,12 +184,12 @@ TEST_F(HaplyLinkTest, StalledLoopSendsNothing) {
 
 TEST_F(HaplyLinkTest, SendsNothingToAnUnprovenService) {
   const std::pair<HaplyGreeting, const char*> kCases[] = {
-      {HaplyGreeting::kOther, "does not speak as Haply's"},
-      {HaplyGreeting::kNoJson, "does not speak as Haply's"},
-      {HaplyGreeting::kNothing, "says nothing"},
-      {HaplyGreeting::kNoArm, "no Inverse3 called 049D"},
+      {HaplyGreeting::kOther, "not Haply's service"},
+      {HaplyGreeting::kNoJson, "not Haply's service"},
+      {HaplyGreeting::kNothing, "sends no messages"},
+      {HaplyGreeting::kNoArm, "no Inverse3 named 049D"},
       {HaplyGreeting::kUncalibrated, "not calibrated"},
-      {HaplyGreeting::kInUse, "Another program uses it"}};
+      {HaplyGreeting::kInUse, "Another program uses the arm"}};
   for (const auto& [greeting, sentence] : kCases) {
     greet(greeting);
     const auto opened = link();
@@ -199,17 +199,17 @@ TEST_F(HaplyLinkTest, SendsNothingToAnUnprovenService) {
   }
 }
 
-TEST_F(HaplyLinkTest, SaysWhenNobodyListens) {
+TEST_F(HaplyLinkTest, ReportsAMissingServer) {
   greet();
   const std::uint16_t port = service_->port();
   service_.reset();
   const auto opened = haply::open_link("049D", port, clock_);
   ASSERT_FALSE(opened);
-  EXPECT_NE(opened.error().message.find("Nobody listens on port " + std::to_string(port)),
+  EXPECT_NE(opened.error().message.find("No server listens on port " + std::to_string(port)),
             std::string::npos);
 }
 
-TEST_F(HaplyLinkTest, ListsTheArmsOfAServiceAndTellsItNothing) {
+TEST_F(HaplyLinkTest, ListsTheArmsOfAServiceAndSendsNothing) {
   greet();
   const auto arms = haply::find_arms(service_->port());
   ASSERT_TRUE(arms) << arms.error().message;
@@ -222,8 +222,8 @@ TEST_F(HaplyLinkTest, ListsTheArmsOfAServiceAndTellsItNothing) {
   EXPECT_NE(haply::find_arms(service_->port())->front().trouble, "");
 }
 
-// The rows of the fault matrix for an arm behind a service: what it does, the fault that latches,
-// and the zero force that follows wherever the service still listens.
+// The rows of the fault matrix for an arm behind a service: the fault of the service, the fault
+// that latches, and the zero force that follows if the service still accepts messages.
 TEST_F(HaplyLinkTest, NamesEachFaultOfAServiceAndLatchesZeroForce) {
   struct Row {
     const char* name;
@@ -231,14 +231,14 @@ TEST_F(HaplyLinkTest, NamesEachFaultOfAServiceAndLatchesZeroForce) {
     Fault fault;
     int more;
   };
-  // A message every 10 ms goes to a service that does not answer, until 50 ms are a fault.
-  const Row rows[] = {{"service says nothing", HaplyMischief::kSilent, Fault::kNoReports, 7},
+  // A message is sent every 10 ms to a service that does not answer; after 50 ms this is a fault.
+  const Row rows[] = {{"service sends nothing", HaplyMischief::kSilent, Fault::kNoReports, 7},
                       {"service answers 60 ms late", HaplyMischief::kLate, Fault::kNoReports, 7},
                       {"NaN from the service", HaplyMischief::kNan, Fault::kNoReports, 2},
                       {"number too large", HaplyMischief::kInfinite, Fault::kNoReports, 2},
                       {"position in mm", HaplyMischief::kMillimetres, Fault::kNoReports, 2},
                       {"position without a number", HaplyMischief::kNull, Fault::kNoReports, 2},
-                      {"no JSON", HaplyMischief::kGarbage, Fault::kNoReports, 2},
+                      {"invalid JSON", HaplyMischief::kGarbage, Fault::kNoReports, 2},
                       {"arm not ready", HaplyMischief::kNotReady, Fault::kNoReports, 2},
                       {"message of 1 MB", HaplyMischief::kHuge, Fault::kTransportLost, 2},
                       {"arm unplugged", HaplyMischief::kUnplugged, Fault::kTransportLost, 2},
@@ -254,7 +254,7 @@ TEST_F(HaplyLinkTest, NamesEachFaultOfAServiceAndLatchesZeroForce) {
     EXPECT_LT(device_->state().p_WT.norm(), 0.1) << row.name;
     service_->begin(HaplyMischief::kNone);
     ticks(100, {1, 0, 0});
-    EXPECT_EQ(device_->fault(), row.fault) << row.name << " came back";
+    EXPECT_EQ(device_->fault(), row.fault) << row.name << " returned";
     EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0)) << row.name;
     EXPECT_TRUE(service_->log().f_T_B.isZero(0)) << row.name;
     EXPECT_LE(support::forces_since(service_->log().taken_B, before), row.more) << row.name;
@@ -266,7 +266,7 @@ TEST_F(HaplyLinkTest, NamesEachFaultOfAServiceAndLatchesZeroForce) {
   }
 }
 
-TEST_F(HaplyLinkTest, CountsWhatCannotBeUnderstood) {
+TEST_F(HaplyLinkTest, CountsInvalidMessages) {
   greet();
   ASSERT_NO_FATAL_FAILURE(open());
   ticks(20, {0, 0, 0});
@@ -275,7 +275,7 @@ TEST_F(HaplyLinkTest, CountsWhatCannotBeUnderstood) {
   EXPECT_TRUE(ticks_until({0, 0, 0}, [&] { return device_->wire_counters().rejected > 5; }));
 }
 
-TEST_F(HaplyLinkTest, AnAnswerThatIsLeftOutEndsNothing) {
+TEST_F(HaplyLinkTest, ContinuesAfterAMissingAnswer) {
   greet();
   ASSERT_NO_FATAL_FAILURE(open());
   service_->begin(HaplyMischief::kLeavesOneOut);
@@ -312,14 +312,14 @@ TEST_F(HaplyLinkTest, LeavesTheServiceWhenTheArmIsGone) {
   ASSERT_TRUE(ticks_until({0.4, 0, 0}, [&] { return device_->f_sent_W().x() > 0.3; }));
   service_->begin(HaplyMischief::kUnplugged);
   ASSERT_TRUE(ticks_until({0.4, 0, 0}, [&] { return device_->lost(); }));
-  // Its last zero must not reach the arm once a successor drives it.
+  // Its last zero must not reach the arm after a new link drives it.
   for (int look = 0; look < 1000 && !service_->log().closed_by_client; ++look) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   EXPECT_TRUE(service_->log().closed_by_client);
 }
 
-TEST_F(HaplyLinkTest, AsksNothingOfTheHeapOnTheServoThread) {
+TEST_F(HaplyLinkTest, DoesNotAllocateOnTheServoThread) {
   greet();
   ASSERT_NO_FATAL_FAILURE(open());
   ticks(20, {0.1, 0, 0});

@@ -24,11 +24,11 @@ TEST(HaplyMessage, ReadsAState) {
   EXPECT_TRUE(state.R_BT.isIdentity());
 }
 
-TEST(HaplyMessage, KnowsAnArmByItsNameAlone) {
+TEST(HaplyMessage, IdentifiesAnArmByItsIdOnly) {
   ArmState state;
   EXPECT_EQ(read_state(kState, "049E", state), StateRead::kGone);
   EXPECT_EQ(read_state(R"({"inverse3":[]})", "049D", state), StateRead::kGone);
-  // A message of something else says nothing of the arm.
+  // A message about another device contains nothing about the arm.
   EXPECT_EQ(read_state(R"({"event":"battery"})", "049D", state), StateRead::kRejected);
   EXPECT_EQ(read_state("[]", "049D", state), StateRead::kRejected);
   EXPECT_EQ(read_state("", "049D", state), StateRead::kRejected);
@@ -60,7 +60,7 @@ TEST(HaplyMessage, RejectsImpossibleNumbers) {
   }
 }
 
-TEST(HaplyMessage, UnderstandsOrRejectsAnyDamage) {
+TEST(HaplyMessage, AcceptsOrRejectsAnyDamagedMessage) {
   std::mt19937 random(static_cast<std::uint32_t>(support::seed_of(7)));
   std::uniform_int_distribution<std::size_t> place(0, kState.size() - 1);
   std::uniform_int_distribution<int> byte(0, 255);
@@ -79,7 +79,7 @@ TEST(HaplyMessage, UnderstandsOrRejectsAnyDamage) {
   }
 }
 
-TEST(HaplyMessage, AsksForAForceInBothSpellings) {
+TEST(HaplyMessage, RequestsAForceInBothSpellings) {
   EXPECT_EQ(force_message("049D", {0.25, -1, 0}),
             R"({"inverse3":[{"device_id":"049D","commands":{"set_cursor_force":{)"
             R"("vector":{"x":0.250000,"y":-1.000000,"z":0.000000},)"

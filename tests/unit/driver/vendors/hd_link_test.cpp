@@ -30,7 +30,7 @@ struct OpenHaptics {
 
 using HdLinkTest = VendorLinkTest<OpenHaptics>;
 
-TEST_F(HdLinkTest, TellsPoseAndButtonsInMetresAndGivesTheGatedForce) {
+TEST_F(HdLinkTest, ReadsPoseInMetresAndSendsTheGatedForce) {
   mock_->arm.R_BT = Eigen::AngleAxisd(0.3, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   mock_->arm.buttons = 2;
   ASSERT_NO_FATAL_FAILURE(open());
@@ -56,7 +56,7 @@ TEST_F(HdLinkTest, ClampsToTheNominalForce) {
   EXPECT_NEAR(device_->f_sent_W().norm(), 0.5, 1e-9);
 }
 
-TEST_F(HdLinkTest, AnArmThatIsNotCalibratedGetsNoForce) {
+TEST_F(HdLinkTest, UncalibratedArmGetsNoForce) {
   mock_->calibrated = false;
   const auto link = hd::open_link(library_, clock_);
   ASSERT_FALSE(link);
@@ -70,11 +70,11 @@ TEST_F(HdLinkTest, AnArmThatIsNotCalibratedGetsNoForce) {
   ASSERT_NO_FATAL_FAILURE(open());
 }
 
-TEST_F(HdLinkTest, SaysWhyAnArmCannotBeOpened) {
+TEST_F(HdLinkTest, OpenErrorNamesTheReason) {
   mock_->there = false;
   const auto link = hd::open_link(library_, clock_);
   ASSERT_FALSE(link);
-  EXPECT_NE(link.error().message.find("told to fail"), std::string::npos);
+  EXPECT_NE(link.error().message.find("failure requested by the test"), std::string::npos);
   mock_->there = true;
   mock_->nominal = 0;
   EXPECT_FALSE(hd::open_link(library_, clock_));
@@ -87,14 +87,14 @@ TEST_F(HdLinkTest, NamesEachErrorOfTheLibraryAndLatchesZeroForce) {
   const auto nan = [](Mock& mock) { mock.tells_nan = true; };
   const auto late = [](Mock& mock) { mock.late = true; };
   const FaultRow rows[] = {
-      {"library says error: warm motors", error(0x0200), Fault::kRefused, 1},
-      {"library says error: exceeded force", error(0x0201), Fault::kRefused, 1},
-      {"library says error: exceeded velocity", error(0x0203), Fault::kRefused, 1},
-      {"library says error: device fault", error(0x0300), Fault::kTransportLost, 1},
-      {"library says error: communication", error(0x0302), Fault::kTransportLost, 1},
-      {"library says error: frame", error(0x0402), Fault::kNoReports, 1},
+      {"library reports error: warm motors", error(0x0200), Fault::kRefused, 1},
+      {"library reports error: exceeded force", error(0x0201), Fault::kRefused, 1},
+      {"library reports error: exceeded velocity", error(0x0203), Fault::kRefused, 1},
+      {"library reports error: device fault", error(0x0300), Fault::kTransportLost, 1},
+      {"library reports error: communication", error(0x0302), Fault::kTransportLost, 1},
+      {"library reports error: frame", error(0x0402), Fault::kNoReports, 1},
       {"NaN from the library", nan, Fault::kNoReports, 1},
-      {"library's scheduler turns every 60 ms", late, Fault::kNoReports, 3}};
+      {"library's scheduler runs every 60 ms", late, Fault::kNoReports, 3}};
   expect_latched_zero(rows, 40'000'000);
 }
 
@@ -112,7 +112,7 @@ TEST_F(HdLinkTest, OneLinkOwnsTheLibrary) {
   EXPECT_FALSE(hd::how_to_calibrate(library_));
 }
 
-TEST_F(HdLinkTest, ALoopThatStandsStillLosesItsForce) {
+TEST_F(HdLinkTest, StalledLoopLosesItsForce) {
   ASSERT_NO_FATAL_FAILURE(open());
   ASSERT_TRUE(ticks_until({0.6, 0, 0}, [&] { return device_->f_sent_W().x() > 0.5; }));
   std::this_thread::sleep_for(std::chrono::milliseconds(200));

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-TEST(NewestSlot, GivesTheNewestOnce) {
+TEST(NewestSlot, ReturnsTheNewestValueOnce) {
   NewestSlot<int> slot;
   int value = 0;
   EXPECT_FALSE(slot.take(value));
@@ -24,7 +24,7 @@ TEST(NewestSlot, GivesTheNewestOnce) {
   EXPECT_FALSE(slot.take(value));
 }
 
-TEST(NewestSlot, NeverGivesAHalfOrAnOlderValueToAnotherThread) {
+TEST(NewestSlot, ConcurrentReadsAreCompleteAndOrdered) {
   struct Wide {
     std::array<int, 64> same{};
   };
@@ -56,14 +56,14 @@ TEST(ForceBox, KeepsAForceThatWaitsUnlessZeroComes) {
   Vector3d f(9, 9, 9);
   EXPECT_FALSE(box.take(f));
   EXPECT_TRUE(box.put({1, 0, 0}));
-  EXPECT_FALSE(box.put({2, 0, 0})) << "the loop must hear that the one before goes out";
+  EXPECT_FALSE(box.put({2, 0, 0})) << "the loop must know that the previous force is sent";
   ASSERT_TRUE(box.take(f));
   EXPECT_EQ(f, Vector3d(1, 0, 0));
   EXPECT_FALSE(box.take(f));
   EXPECT_TRUE(box.put({3, 0, 0}));
   EXPECT_FALSE(box.put({0, 0, 0}));
   ASSERT_TRUE(box.take(f));
-  EXPECT_EQ(f, Vector3d(0, 0, 0)) << "zero overtakes";
+  EXPECT_EQ(f, Vector3d(0, 0, 0)) << "zero replaces the waiting force";
   EXPECT_TRUE(box.put({4, 0, 0}));
   ASSERT_TRUE(box.take(f));
   EXPECT_EQ(f, Vector3d(4, 0, 0));
@@ -74,16 +74,16 @@ TEST(ForceBox, ZeroIsSettledOnceTheOtherThreadHasIt) {
   Vector3d f;
   EXPECT_TRUE(box.put({1, 0, 0}));
   EXPECT_FALSE(box.put({0, 0, 0}));
-  EXPECT_FALSE(box.zero_settled()) << "the other thread may hang with the force before";
+  EXPECT_FALSE(box.zero_settled()) << "the other thread may still send the previous force";
   ASSERT_TRUE(box.take(f));
   EXPECT_TRUE(box.zero_settled());
   EXPECT_TRUE(box.put({0, 0, 0}));
-  EXPECT_TRUE(box.zero_settled()) << "one more zero changes nothing";
+  EXPECT_TRUE(box.zero_settled()) << "another zero changes nothing";
   EXPECT_FALSE(box.put({0, 0, 0}));
   EXPECT_TRUE(box.zero_settled());
 }
 
-TEST(ForceBox, EveryForceThatWasTakenInGoesOutOnceAndInOrder) {
+TEST(ForceBox, EveryAcceptedForceIsSentOnceInOrder) {
   ForceBox box;
   constexpr int kForces = 500;
   std::atomic<bool> done{false};
@@ -125,7 +125,7 @@ class OpenSlotLink final : public SlotLink {
   using SlotLink::take_force;
 };
 
-TEST(SlotLink, AForceThatWasRefusedNeverGoesOut) {
+TEST(SlotLink, RefusedForceIsNeverSent) {
   VirtualClock clock;
   OpenSlotLink link({}, clock);
   const GatedForce force = support::open_gate().pass({0.5, 0, 0}, {0, 0, 0}, 0.009);
@@ -135,7 +135,7 @@ TEST(SlotLink, AForceThatWasRefusedNeverGoesOut) {
   link.refuse(true);
   EXPECT_EQ(write(), LinkStatus::kRefused);
   link.refuse(false);
-  EXPECT_FALSE(link.take_force(f) && !f.isZero(0)) << "the loop believes that it did not go out";
+  EXPECT_FALSE(link.take_force(f) && !f.isZero(0)) << "the loop assumes that it was not sent";
   EXPECT_EQ(write(), LinkStatus::kOk);
   ASSERT_TRUE(link.take_force(f));
   EXPECT_EQ(f, force.f_T_W());

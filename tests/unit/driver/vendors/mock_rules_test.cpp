@@ -1,5 +1,5 @@
-// The libraries that stand in for vendors' in tests of the links are strict: each rule is broken
-// here once, and the mock says so. A rule that nothing can break would prove nothing of the links.
+// The mock libraries of the link tests are strict: each rule is broken here once, and the mock
+// reports it. A rule that cannot be broken would prove nothing about the links.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ Mock& mock_of(const char* file, const char* name) {
   return *reinterpret_cast<Mock* (*)()>(dlsym(handle, name))();
 }
 
-/// Expects that a mock complains of the last of some calls alone, in these words.
+/// Expects that a mock reports only the last of some calls, with the given words.
 template <class Mock>
 void expect_complaint(Mock& mock, const std::string& words, const std::function<void()>& before,
                       const std::function<void()>& wrong) {
@@ -32,11 +32,11 @@ void expect_complaint(Mock& mock, const std::string& words, const std::function<
   EXPECT_TRUE(mock.wrong.empty()) << words << ": too early: " << mock.wrong.front();
   mock.wrong.clear();
   wrong();
-  ASSERT_FALSE(mock.wrong.empty()) << "nobody complains: " << words;
+  ASSERT_FALSE(mock.wrong.empty()) << "not reported: " << words;
   EXPECT_EQ(mock.wrong.front(), words);
 }
 
-TEST(MockDhd, ComplainsOfEachCallThatIsOutOfOrder) {
+TEST(MockDhd, ReportsEachCallThatIsOutOfOrder) {
   const auto library = dhd::load(THIMBLE_MOCK_DHD);
   ASSERT_TRUE(library) << library.error().message;
   const dhd::Functions& call = library->call;
@@ -144,7 +144,7 @@ TEST(MockDhd, ComplainsOfEachCallThatIsOutOfOrder) {
   mock.reset();
 }
 
-/// What a task of the scheduler does in its only turn.
+/// The action of a scheduled task in its only call.
 struct Turn {
   std::function<void()> act;
   std::atomic<bool> done{false};
@@ -157,7 +157,7 @@ struct Turn {
   }
 };
 
-TEST(MockHd, ComplainsOfEachCallThatIsOutOfOrder) {
+TEST(MockHd, ReportsEachCallThatIsOutOfOrder) {
   const auto library = hd::load(THIMBLE_MOCK_HD);
   ASSERT_TRUE(library) << library.error().message;
   const hd::Functions& call = library->call;

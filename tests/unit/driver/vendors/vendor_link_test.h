@@ -18,16 +18,17 @@
 
 namespace thimble::driver {
 
-/// A device behind a vendor's library, over a strict one that stands in for it. Vendor says which:
-/// types `Library` and `Mock`; `kFile`, `kMock` and `kName`, the stand-in's file, its function that
-/// gives the mock, and the name in the table of faults; `kPeriod_ns`, a tick of the vendor's own
-/// loop; `kTicksAfter`, how long a fault is watched; `load`, `open_link`, and `heal`, which ends
-/// what a fault began.
+/// A device behind a vendor's library, which a strict mock replaces. `Vendor` has the types
+/// `Library` and `Mock`; `kFile`, the file of the mock library; `kMock`, its function that returns
+/// the mock; `kName`, the name in the table of faults; `kPeriod_ns`, the period of the vendor's own
+/// loop; `kTicksAfter`, the number of ticks for which a fault is observed; `load` and `open_link`;
+/// and `heal`, which ends the effect of a fault.
 template <class Vendor>
 class VendorLinkTest : public ::testing::Test {
  protected:
   using Mock = typename Vendor::Mock;
-  /// What goes wrong, the fault that it latches, and how many forces may still go out with it.
+  /// A fault of the library, the fault that the device latches, and the number of forces that may
+  /// still be sent.
   struct FaultRow {
     const char* name;
     std::function<void(Mock&)> begin;
@@ -70,7 +71,7 @@ class VendorLinkTest : public ::testing::Test {
     ASSERT_TRUE(device_->activate());
   }
 
-  /// Asks for the force (world, N) in up to 5,000 ticks and returns whether `done` was said.
+  /// Requests the force (world, N) for up to 5,000 ticks and returns whether `done` became true.
   template <class Done>
   bool ticks_until(const Eigen::Vector3d& f_T_W, Done&& done) {
     for (int i = 0; i < 5'000; ++i) {
@@ -91,7 +92,8 @@ class VendorLinkTest : public ::testing::Test {
     change(*mock_);
   }
 
-  /// Expects that each row's fault is named under force, and that zero is what goes out for good.
+  /// Expects that each row's fault is reported under force, and that from then on only zero is
+  /// sent.
   void expect_latched_zero(std::span<const FaultRow> rows, std::int64_t silence_ns) {
     const Eigen::Vector3d zero(0, 0, 0);
     for (const FaultRow& row : rows) {
@@ -121,8 +123,8 @@ class VendorLinkTest : public ::testing::Test {
     }
   }
 
-  /// Pulls the arm by `pull` and plugs it in again, three times, as a watch over a run does.
-  /// Expects that the new link has the library's arm each time, and that nothing is called out of
+  /// Disconnects the arm by `pull` and reconnects it three times, as the replug watch of a run
+  /// does. Expects that the new link owns the library's arm each time, and that no call is out of
   /// order. `closes_first`: the lost link is closed before the new one is opened.
   void expect_replugs(const std::function<void(Mock&)>& pull, bool closes_first) {
     ASSERT_NO_FATAL_FAILURE(open());
@@ -149,12 +151,12 @@ class VendorLinkTest : public ::testing::Test {
     }
   }
 
-  /// Expects that a second link is refused while the first works, and leaves it alone.
+  /// Expects that a second link is refused while the first works, and that the first is unaffected.
   void expect_one_owner() {
     ASSERT_NO_FATAL_FAILURE(open());
     const auto second = Vendor::open_link(library_, clock_);
     ASSERT_FALSE(second);
-    EXPECT_NE(second.error().message.find("open already"), std::string::npos);
+    EXPECT_NE(second.error().message.find("already opened"), std::string::npos);
     const std::uint64_t before = device_->wire_counters().reports;
     EXPECT_TRUE(
         ticks_until({0, 0, 0}, [&] { return device_->wire_counters().reports > before + 50; }));

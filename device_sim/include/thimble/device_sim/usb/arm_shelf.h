@@ -25,8 +25,8 @@ enum class HandMotion : std::uint8_t {
   kNone,    ///< Holds the tip only while homing.
 };
 
-/// Custom arm on a shelf board: its actual mechanics, motors and encoders, whatever a driver
-/// assumes.
+/// Custom arm on a shelf board: its actual mechanics, motors and encoders, independent of what a
+/// driver assumes.
 struct ShelfArm {
   driver::ArmModel model;  ///< Geometry, motors and encoders of the arm.
   /// Settings of the arm. Only tip, hand, weight, drive train, motors, watchdog, wiring and missed

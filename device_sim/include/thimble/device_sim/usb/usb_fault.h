@@ -48,7 +48,7 @@ struct FaultOrder {
 ///
 ///     KIND [in|out] [after=FRAMES] [for=FRAMES] [rate=CHANCE]
 ///
-/// with the defaults of FaultOrder. The error says in a sentence what is wrong. Real-time: never
+/// with the defaults of FaultOrder. The error names the wrong word and the syntax. Real-time: never
 /// from the servo thread.
 THIMBLE_EXPORT driver::Result<FaultOrder> parse_fault(std::string_view line);
 

@@ -53,7 +53,7 @@ class THIMBLE_EXPORT UsbipServer {
   using FrameObserver = std::function<void(std::int64_t)>;
 
   /// Opens a server and listens. Keeps a reference to the device, which must outlive it. If the
-  /// port is taken, the error says what to do. Real-time: never from the servo thread.
+  /// port is taken, the error states the remedy. Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<UsbipServer>> open(FaultyDevice& device,
                                                            const UsbipServerSettings& settings);
 

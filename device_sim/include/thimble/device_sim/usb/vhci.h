@@ -20,7 +20,7 @@ THIMBLE_EXPORT std::optional<int> find_free_port(std::string_view status);
 
 /// Attaches a device of a USB/IP server on this machine to this kernel: imports it over TCP and
 /// passes the socket to the virtual host, which keeps it. Requires root and the module vhci-hcd.
-/// Returns the port of the virtual host. The error says what to do. Waits for the server, which
+/// Returns the port of the virtual host. The error states the remedy. Waits for the server, which
 /// must run on another thread. Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<int> attach_to_kernel(
     std::uint16_t port, const std::string& bus_id, const std::filesystem::path& vhci = kVhciFolder);
