@@ -108,7 +108,7 @@ def test_laws_that_are_none_are_told_before_anything_runs():
         (lambda: thimble.compiled_law(_half, [1.0]), thimble.ArgumentError, "array of float64"),
         (lambda: thimble.compiled_law(_half, np.zeros(4)[::2]), thimble.ArgumentError, "in one piece"),
         (lambda: thimble.run("box", law=3), TypeError, "law: expected a function of a tick"),
-        (lambda: thimble.run("two_hands", law=_half), thimble.Error, "for one arm"),
+        (lambda: thimble.run("two_hands", law=_half), thimble.Error, "supports one arm"),
     ]:
         with pytest.raises(error, match=said):
             wrong()

@@ -269,7 +269,7 @@ def test_real_time_is_watched_from_the_side():
 
 def test_real_time_takes_no_law_and_no_steps():
     core = thimble._core
-    with pytest.raises(thimble.Error, match="virtual time alone"):
+    with pytest.raises(thimble.Error, match="requires virtual time"):
         core.Run("box", real_time=True, law=lambda tick: None)
     with pytest.raises(thimble.Error, match="not stepped by hand"):
         core.Run("box", real_time=True).step()

@@ -275,7 +275,7 @@ TEST_F(MixedArms, NamesMustBeThoseOfTheScene) {
   make_real("middle");
   const auto unknown = prepared();
   ASSERT_FALSE(unknown);
-  EXPECT_NE(unknown.error().message.find("none is called \"middle\": left, right."),
+  EXPECT_NE(unknown.error().message.find("none is named \"middle\". Choose one of: left, right."),
             std::string::npos)
       << unknown.error().message;
   const auto one = session::Session::prepare(kSource / "app/scenes/box.yaml", options_);

@@ -89,8 +89,8 @@ TEST(Report, WritesEachFigureWithItsGoal) {
 
 TEST(Report, TellsTheRunInPlainWords) {
   const std::string text = summary(example());
-  EXPECT_NE(text.find("touched it 1 time,"), std::string::npos) << text;
-  EXPECT_NE(text.find("0.80 N at most"), std::string::npos) << text;
+  EXPECT_NE(text.find(": 1 contact,"), std::string::npos) << text;
+  EXPECT_NE(text.find("0.80 N maximum"), std::string::npos) << text;
   EXPECT_NE(text.find("No contact was lost"), std::string::npos) << text;
   const auto lines = std::count(text.begin(), text.end(), '\n');
   EXPECT_GE(lines, 8);
@@ -106,9 +106,7 @@ TEST(Report, GivesTheMeanForceOfARunThatTouchedNoSurface) {
     report.statistics.take(record);
   }
   const std::string text = summary(report);
-  EXPECT_NE(text.find("1.50 N on average (rms) over the run, which touched no surface"),
-            std::string::npos)
-      << text;
+  EXPECT_NE(text.find("1.50 N RMS over the run, which had no contact"), std::string::npos) << text;
 }
 
 TEST(Report, NamesTheWallThatPushed) {
@@ -116,7 +114,7 @@ TEST(Report, NamesTheWallThatPushed) {
   EXPECT_EQ(summary(report).find("Walls"), std::string::npos);
   report.walls = {.pushed = 51, .f_strongest_W = {0, 0, 2.5}};
   const std::string text = summary(report);
-  EXPECT_NE(text.find("walls pushed in 51 ticks, with 2.50 N at most (-z wall)"), std::string::npos)
+  EXPECT_NE(text.find("walls pushed in 51 ticks, with at most 2.50 N (-z wall)"), std::string::npos)
       << text;
   const std::filesystem::path folder = support::scratch_folder() / "thimble_report_walls";
   ASSERT_TRUE(write_report(report, folder).ok());
@@ -154,7 +152,7 @@ TEST(Report, NamesTheLinkBesideTheFault) {
   report.fault = driver::Fault::kOverSpeed;
   report.link = driver::LinkState::kLost;
   report.home_needed = true;
-  EXPECT_NE(summary(report).find("the arm was gone from the wire at the end"), std::string::npos);
+  EXPECT_NE(summary(report).find("the arm was disconnected at the end"), std::string::npos);
   const std::filesystem::path folder = support::scratch_folder() / "thimble_report_link";
   ASSERT_TRUE(write_report(report, folder).ok());
   const auto end = read(folder / "report.json")["end"];
@@ -166,7 +164,7 @@ TEST(Report, NamesTheLinkBesideTheFault) {
 TEST(Report, WarnsOfAnArmThatDidNotTakeTheLastZeroForce) {
   session::RunFigures report = example();
   report.end = driver::ServoEnd::kDone;
-  EXPECT_NE(summary(report).find("the arm was left with zero force."), std::string::npos);
+  EXPECT_NE(summary(report).find("the arm accepted zero force."), std::string::npos);
   EXPECT_EQ(summary(report).find("DANGER"), std::string::npos);
   report.zero_assured = false;
   report.fault = driver::Fault::kRefused;
@@ -174,8 +172,8 @@ TEST(Report, WarnsOfAnArmThatDidNotTakeTheLastZeroForce) {
        {driver::ServoEnd::kDone, driver::ServoEnd::kStopped, driver::ServoEnd::kFault}) {
     report.end = end;
     const std::string text = summary(report);
-    EXPECT_EQ(text.find("left with zero force"), std::string::npos);
-    EXPECT_NE(text.find("A force may still stand at the arm"), std::string::npos);
+    EXPECT_EQ(text.find("the arm accepted zero force"), std::string::npos);
+    EXPECT_NE(text.find("The arm may still apply a force"), std::string::npos);
     EXPECT_NE(text.find(driver::describe(driver::Fault::kRefused)), std::string::npos);
   }
   const std::filesystem::path folder = support::scratch_folder() / "thimble_report_danger";
@@ -237,7 +235,7 @@ TEST(Report, TellsOfMotorsThatGotHotAndOnlyOfThose) {
   EXPECT_EQ(summary(report).find("Heat"), std::string::npos);
   report.heat_most = 0.93;
   report.heat_lowered = 412;
-  EXPECT_NE(summary(report).find("a motor reached 93 % of its limit; force lowered in 412 ticks"),
+  EXPECT_NE(summary(report).find("a motor reached 93 % of its limit; force reduced in 412 ticks"),
             std::string::npos);
 }
 
@@ -247,14 +245,15 @@ TEST(Report, TellsWhatTheEnergyStageDidIfThereIsOne) {
   report.energy_stage = driver::EnergyStage::kPassivity;
   report.gate.energy_least = -0.0031;
   report.gate.damped = 17;
-  EXPECT_NE(summary(report).find("3.10 mJ given at most beyond what it took; damped in 17 ticks"),
-            std::string::npos);
+  EXPECT_NE(
+      summary(report).find("at most 3.10 mJ given beyond the energy taken; damping in 17 ticks"),
+      std::string::npos);
   report.energy_stage = driver::EnergyStage::kBounding;
   report.gate.bounded = 4;
   report.gate.stalls = 1;
   report.reopen = 0.04;
-  EXPECT_NE(summary(report).find("force cut in 4 ticks"), std::string::npos);
-  EXPECT_NE(summary(report).find("stood still 1 time; the force came back within 40 ms"),
+  EXPECT_NE(summary(report).find("force limited in 4 ticks"), std::string::npos);
+  EXPECT_NE(summary(report).find("was blocked 1 time; the force returned within 40 ms"),
             std::string::npos);
 }
 

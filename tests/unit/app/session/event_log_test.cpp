@@ -71,14 +71,14 @@ TEST_F(EventLogTest, HoldsAFaultOfARunInVirtualTime) {
   session.reset();
   const auto lines = log();
   const std::vector<std::string> begin = {
-      "info The arm is open: .* \\(sim\\) feels two_boxes at 1000 Hz in virtual time\\.",
-      "info Limits in force: 5 N, 3 m/s, mean power 1 W over 2 s, rise 2000 N/s, soft start 0\\.3 "
+      "info The arm is open: .* \\(sim\\) runs two_boxes at 1000 Hz in virtual time\\.",
+      "info Active limits: 5 N, 3 m/s, mean power 1 W over 2 s, rise 2000 N/s, soft start 0\\.3 "
       "s .*, energy stage .*, "
       "walls "
       "of 200 N/m from \\(-110, -110, -110\\) to \\(110, 110, 110\\) mm .*, enabling input: none, "
       "feel check: simulated\\.",
-      "info tick 0, 0\\.000 s: Forces are let through\\.",
-      "debug tick 0, 0\\.000 s: The limit of the force opens\\.",
+      "info tick 0, 0\\.000 s: Forces are enabled\\.",
+      "debug tick 0, 0\\.000 s: The soft start limits the force\\.",
   };
   ASSERT_GT(lines.size(), begin.size());
   for (std::size_t i = 0; i < begin.size(); ++i) {
@@ -89,11 +89,12 @@ TEST_F(EventLogTest, HoldsAFaultOfARunInVirtualTime) {
       return std::regex_search(line, std::regex(words));
     });
   };
-  EXPECT_EQ(count("^info tick \\d+, .* s: The force is cut to the arm's limit\\.$"), 1);
-  EXPECT_EQ(count("^info tick 500, 0\\.500 s: The force was cut to the arm's limit \\d+ times"), 1);
+  EXPECT_EQ(count("^info tick \\d+, .* s: The force is limited to the arm's maximum\\.$"), 1);
+  EXPECT_EQ(
+      count("^info tick 500, 0\\.500 s: The force was limited to the arm's maximum \\d+ times"), 1);
   EXPECT_EQ(count("^error tick 500, 0\\.500 s: Force is off \\(force_not_finite\\)\\. "), 1);
   EXPECT_EQ(count("^error "), 1);
-  EXPECT_EQ(lines.back(), "info The run is over; the arm took zero force.");
+  EXPECT_EQ(lines.back(), "info The run is over; the arm accepted zero force.");
 }
 
 TEST_F(EventLogTest, HoldsNothingOfARunThatIsNotToBeLogged) {
@@ -116,9 +117,9 @@ TEST_F(EventLogTest, RealTimeEventsKeepTheirTime) {
   session.reset();
   const auto lines = log();
   ASSERT_GE(lines.size(), 4u);
-  EXPECT_EQ(lines[1].rfind("info Limits in force: ", 0), 0u) << lines[1];
+  EXPECT_EQ(lines[1].rfind("info Active limits: ", 0), 0u) << lines[1];
   EXPECT_EQ(lines[2].rfind("info tick 0, ", 0), 0u) << lines[2];
-  EXPECT_EQ(lines.back(), "info The run is over; the arm took zero force.");
+  EXPECT_EQ(lines.back(), "info The run is over; the arm accepted zero force.");
   EXPECT_GT(passed, std::chrono::milliseconds(290));
 }
 

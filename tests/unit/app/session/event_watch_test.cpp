@@ -295,8 +295,9 @@ TEST(EventWords, SayWhatHappenedWithTickAndTime) {
   event.activity = Activity::kForceCut;
   event.count = 12;
   event.lasted_ns = 34'000'000;
-  EXPECT_EQ(words_of(event, objects),
-            "tick 1234, 1.234 s: The force was cut to the arm's limit 12 times within 0.034 s.");
+  EXPECT_EQ(
+      words_of(event, objects),
+      "tick 1234, 1.234 s: The force was limited to the arm's maximum 12 times within 0.034 s.");
   event.kind = EventKind::kTouchBegan;
   event.object = 1;
   EXPECT_EQ(words_of(event, objects), "tick 1234, 1.234 s: The tip touches ball.");

@@ -59,7 +59,7 @@ class LogTest : public ::testing::Test {
 TEST_F(LogTest, ALineHasTimeLevelProcessAndWhoSaysIt) {
   const fs::path file = folder_ / "named.log";
   ASSERT_TRUE(begin_log({.file = file, .heading = "thimble 1.2: run box"}));
-  run_logger("box")->info("tick 7, 0.007 s: Forces are let through.");
+  run_logger("box")->info("tick 7, 0.007 s: Forces are enabled.");
   const auto lines = lines_of(file);
   ASSERT_EQ(lines.size(), 2u);
   const std::string time = R"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}[+-]\d\d:\d\d )";

@@ -223,7 +223,7 @@ TEST_F(NextRunTest, KeepsRequestsMadeDuringPreparation) {
   EXPECT_FALSE(viewer->heard());
   const auto late = viewer->ask_restart();
   ASSERT_FALSE(late);
-  EXPECT_NE(late.error().message.find("ask again"), std::string::npos) << late.error().message;
+  EXPECT_NE(late.error().message.find("try again"), std::string::npos) << late.error().message;
   const auto then = next.take(driver::ServoEnd::kStopped, false);
   ASSERT_TRUE(then);
   EXPECT_EQ(then->scene().name, "honey");

@@ -205,7 +205,7 @@ TEST(RecordingOrigin, ClaimsNoMoreTicksThanItStores) {
   for (const bool chunked : {false, true}) {
     const std::size_t before = peak_kilobytes();
     expect_refused(hollow_recording("hollow.h5", 30'000'000, chunked),
-                   "claims 30000000 ticks and does not hold them");
+                   "states 30000000 ticks, but it does not contain them");
     EXPECT_LT(peak_kilobytes() - before, 100'000U);
   }
 }
@@ -226,7 +226,7 @@ TEST(RecordingOrigin, HoleCountsAsNoTicks) {
                        H5Dclose);
     ASSERT_TRUE(set.good());
   }
-  expect_refused(path, "claims 20000000 ticks and does not hold them");
+  expect_refused(path, "states 20000000 ticks, but it does not contain them");
 }
 
 TEST(RecordingOrigin, PipeIsRefused) {

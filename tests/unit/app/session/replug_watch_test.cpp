@@ -145,7 +145,7 @@ TEST_F(ReplugWatchTest, AsksForTheHomePoseAndGivesForceOnlyThere) {
   plugged_ = true;
   pass(12);
   EXPECT_EQ(opened_, 1);
-  EXPECT_TRUE(told("Put it into its home pose and press Enter"));
+  EXPECT_TRUE(told("Move it to its home pose and press Enter"));
   EXPECT_FALSE(told("as before"));
   enter_ = true;
   pass(3);
@@ -168,7 +168,7 @@ TEST_F(ReplugWatchTest, SelfHomingArmNeedsOnlyTheWorkspace) {
   plugged_ = true;
   second_.counts = {1500, 0, 0, 0, 0, 0};
   pass(12);
-  EXPECT_TRUE(told("found its zero again"));
+  EXPECT_TRUE(told("has found its zero"));
   enter_ = true;
   pass(6);
   EXPECT_GT(force(), 0.4);
@@ -197,7 +197,7 @@ TEST_F(ReplugWatchTest, FindsAnArmThatIsPulledAfterAnotherFault) {
   EXPECT_TRUE(told("Force is off (over_speed)"));
   first_.lost = true;
   pass(2);
-  EXPECT_TRUE(told("The arm is gone."));
+  EXPECT_TRUE(told("The arm is disconnected."));
   enter_ = true;
   pass(1);
   EXPECT_EQ(force(), 0);
@@ -206,7 +206,7 @@ TEST_F(ReplugWatchTest, FindsAnArmThatIsPulledAfterAnotherFault) {
   EXPECT_EQ(opened_, 1);
   EXPECT_EQ(last_.fault, Fault::kOverSpeed);
   EXPECT_EQ(last_.link, driver::LinkState::kConnected);
-  EXPECT_TRUE(told("Put it into its home pose and press Enter"));
+  EXPECT_TRUE(told("Move it to its home pose and press Enter"));
   EXPECT_EQ(force(), 0) << "nobody pressed Enter";
   enter_ = true;
   pass(6);
@@ -240,7 +240,7 @@ TEST_F(ReplugWatchTest, AsksForTheHomePoseAfterARestartOfTheBoard) {
   first_.counts = {0, 0, 0, 0, 0, 0};  // where it stands, 42 mm away from its home pose
   first_.silent = false;
   pass(1);
-  EXPECT_TRUE(told("Put it into its home pose and press Enter"));
+  EXPECT_TRUE(told("Move it to its home pose and press Enter"));
   first_.counts = {1500, 800, 0, 0, 0, 0};  // the user moves it
   pass(2);
   enter_ = true;
@@ -263,7 +263,7 @@ TEST_F(ReplugWatchTest, FindsAnArmThatIsPulledAgainBeforeItGotAForce) {
   second_.lost = true;
   plugged_ = false;
   pass(15);
-  EXPECT_TRUE(told("gone again"));
+  EXPECT_TRUE(told("disconnected again"));
   enter_ = true;
   pass(3);
   EXPECT_EQ(force(), 0);

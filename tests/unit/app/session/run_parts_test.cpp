@@ -41,7 +41,7 @@ TEST(ChooseRunArm, ReportsSimulationAndUnknownNames) {
     ASSERT_TRUE(automatic) << automatic.error().message;
     EXPECT_FALSE(automatic->real || automatic->terms);
     ASSERT_EQ(automatic->told.size(), 1u);
-    EXPECT_EQ(automatic->told[0], "No arm is plugged in: the simulated one is used.");
+    EXPECT_EQ(automatic->told[0], "No arm is connected: the simulated arm is used.");
     EXPECT_FALSE(session::choose_run_arm("S1", {}, find));
   }
 }
@@ -79,7 +79,7 @@ TEST(ChooseRunArms, GivesEachArmOfASceneItsOwnBoard) {
     const auto arms = session::choose_run_arms(devices, request, find);
     return arms ? std::string("taken") : arms.error().message;
   };
-  EXPECT_NE(refused({"left=S1", "right=S1"}).find("\"left\" and \"right\" would both be S1"),
+  EXPECT_NE(refused({"left=S1", "right=S1"}).find("\"left\" and \"right\" are both assigned to S1"),
             std::string::npos);
   EXPECT_NE(refused({"left=S1", "S2"}).find("NAME=S2"), std::string::npos);
   EXPECT_NE(refused({"left=S1", "left=S2"}).find("\"left\" twice"), std::string::npos);
@@ -112,7 +112,7 @@ TEST(HeatWarning, IsGivenOnceWithTheFirstTickThatIsSoHot) {
     if (const std::string text = warning.look(tick); !text.empty()) given.push_back(text);
   }
   ASSERT_EQ(given.size(), 1u);
-  EXPECT_EQ(given[0].find("A motor is at 80 % of the heat it bears;"), 0u) << given[0];
+  EXPECT_EQ(given[0].find("A motor is at 80 % of its heat limit;"), 0u) << given[0];
   EXPECT_TRUE(warning.look(run.back()).empty());
 }
 

@@ -95,7 +95,7 @@ TEST_F(SaveKnobs, ReplaceNoFileUnlessThatIsAskedFor) {
   EXPECT_EQ(save_knobs(reader)->file, folder_ / "honey-turned-2.yaml");
   const auto there = save_knobs(reader, {.file = folder_ / "honey-turned.yaml", .over = false});
   ASSERT_FALSE(there);
-  EXPECT_NE(there.error().message.find("is there already"), std::string::npos);
+  EXPECT_NE(there.error().message.find("already exists"), std::string::npos);
   const auto over = save_knobs(reader, {.file = {}, .over = true});
   ASSERT_TRUE(over) << over.error().message;
   EXPECT_EQ(over->file, file);
@@ -109,7 +109,7 @@ TEST_F(SaveKnobs, NeverWriteOverASceneThatCameWithThimble) {
   ASSERT_TRUE(turn_knob(reader, "ball: stiffness=500"));
   const auto over = save_knobs(reader, {.file = {}, .over = true});
   ASSERT_FALSE(over);
-  EXPECT_NE(over.error().message.find("came with Thimble"), std::string::npos);
+  EXPECT_NE(over.error().message.find("is shipped with Thimble"), std::string::npos);
   const auto saved = save_knobs(reader);
   ASSERT_TRUE(saved) << saved.error().message;
   EXPECT_EQ(saved->file, folder_ / "data/thimble/scenes/clay-turned.yaml");

@@ -140,7 +140,7 @@ TEST_F(SessionStart, AsksBeforeARealArmGetsForces) {
       .ask = [&](const std::string& line) { told.push_back(line); }};
   EXPECT_TRUE(session::agree_to_forces(**prepared, false, terminal, stop));
   ASSERT_EQ(told.size(), 2u);
-  EXPECT_NE(told[0].find("S1 is about to get forces."), std::string::npos) << told[0];
+  EXPECT_NE(told[0].find("S1 is about to apply forces."), std::string::npos) << told[0];
   EXPECT_NE(told[0].find("in the home pose"), std::string::npos) << told[0];
   EXPECT_EQ(looks, 3) << "it waits for the answer";
   answer = session::EnterKey::kClosed;

@@ -90,11 +90,11 @@ TEST_F(SessionTest, ReportsATipThatStartsInside) {
   ASSERT_NE(inside, nullptr);
   ASSERT_EQ(inside->told().size(), 1U);
   EXPECT_EQ(inside->told()[0],
-            "The tip starts inside ball: no surface is felt there until the tip has been outside.");
+            "The tip starts inside ball: its surface is felt only once the tip has been outside.");
   inside->run();
   const session::RunFigures figures = inside->figures();
   EXPECT_EQ(figures.inside_at_start, std::vector<std::string>{"ball"});
-  EXPECT_NE(summary(figures).find("Start     the tip was inside ball"), std::string::npos);
+  EXPECT_NE(summary(figures).find("Start     the tip started inside ball"), std::string::npos);
 }
 
 TEST_F(SessionTest, RecordsThatATipStartsInside) {

@@ -59,7 +59,7 @@ TEST(StartPose, TellsHowFarTheTipIsFromHomeAndFromTheWorkspace) {
   EXPECT_EQ(place.trouble({0.05, 0.0199, 0}, true), "");
   const std::string far_off = place.trouble({0.05, 0.03, 0.04}, true);
   EXPECT_TRUE(has(far_off, "50 mm away from its home pose")) << far_off;
-  EXPECT_TRUE(has(far_off, "counters began elsewhere")) << far_off;
+  EXPECT_TRUE(has(far_off, "counters are wrong")) << far_off;
   EXPECT_EQ(place.trouble({0.05, 0.03, 0.04}, false), "");
   EXPECT_EQ(place.trouble({-0.119, 0, 0}, false), "");
   const std::string outside = place.trouble({-0.13, 0, 0.14}, false);

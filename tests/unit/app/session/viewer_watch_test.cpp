@@ -119,9 +119,9 @@ TEST_F(ViewerWatchTest, TellsOfAPause) {
   const auto viewer = view();
   step();
   viewer->ask_pause(true);
-  EXPECT_EQ(step(3), "info tick 5, 0.005 s: A viewer pauses the run.\n");
+  EXPECT_EQ(step(3), "info tick 5, 0.005 s: A viewer paused the run.\n");
   viewer->ask_pause(false);
-  EXPECT_EQ(step(3), "info tick 5, 0.005 s: A viewer lets the run go on.\n");
+  EXPECT_EQ(step(3), "info tick 5, 0.005 s: A viewer resumed the run.\n");
 }
 
 }  // namespace

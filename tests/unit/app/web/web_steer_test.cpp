@@ -77,7 +77,7 @@ TEST(SteerRun, TellsWhatItCannotAskFor) {
 
   steered.run->close();
   for (const char* words : {"pause", "restart", "turn clay: stiffness=20"}) {
-    EXPECT_NE(steered.ask(words).find("hears nothing more"), std::string::npos) << words;
+    EXPECT_NE(steered.ask(words).find("accepts no requests"), std::string::npos) << words;
   }
   desk.run->set_state(session::RunState::kEnded);
   EXPECT_EQ(desk.ask("pause"), "The run has ended.");
