@@ -178,16 +178,16 @@ TEST_F(Bag, SaysWhatIsThereWhereATopicIsNot) {
   expect_refused({"has no topic /pose", "/arm/pose (geometry_msgs/msg/PoseStamped)"}, "/pose");
   expect_refused({"/arm/wrench is of type geometry_msgs/msg/WrenchStamped", "expected"},
                  "/arm/wrench");
-  expect_refused({"/goal holds no message"}, "/goal");
+  expect_refused({"/goal has no messages"}, "/goal");
   EXPECT_TRUE(read_bag(file(), BagKind::kPositions, "/arm/pose"));
 }
 
 TEST_F(Bag, RefusesWhatIsNoBag) {
   expect_refused({"no such bag"});
   std::ofstream(file()) << "time x y z\n0 0 0 0\n";
-  expect_refused({"is damaged, or no ROS bag"});
+  expect_refused({"is damaged, or not a ROS bag"});
   std::ofstream(file(), std::ios::trunc).flush();  // an empty file is an empty data base
-  expect_refused({"no ROS bag", "lacks the tables"});
+  expect_refused({"not a ROS bag", "the tables topics and messages are missing"});
   fs::remove(file());
   const auto none = read_bag(folder_, BagKind::kPositions);
   ASSERT_FALSE(none);
@@ -210,14 +210,14 @@ TEST_F(Bag, RefusesMessagesThatCannotBeMeant) {
   auto long_one = pose(2, {0, 0, 0});
   long_one.resize(long_one.size() + 8);
   for (const Case& wrong :
-       {Case{"message 2 of /pose is no", {}}, Case{"message 2 of /pose is no", short_one},
-        Case{"message 2 of /pose is no", long_one},
-        Case{"message 2 of /pose is no", encode(BagKind::kForces, {2, "world", {0, 0, 0}})},
+       {Case{"message 2 of /pose is not a", {}}, Case{"message 2 of /pose is not a", short_one},
+        Case{"message 2 of /pose is not a", long_one},
+        Case{"message 2 of /pose is not a", encode(BagKind::kForces, {2, "world", {0, 0, 0}})},
         Case{"not finite", pose(2, {0, std::numeric_limits<double>::quiet_NaN(), 0})},
         Case{"not finite", pose(2, {0, 0, std::numeric_limits<double>::infinity()})},
         Case{"frame \"base\"", pose(2, {0, 0, 0}, "base")},
         Case{"more than a day", pose(100'000'000'000'000, {0, 0, 0})},
-        Case{"goes back in time", pose(0, {0, 0, 0})},
+        Case{"the time of /pose decreases", pose(0, {0, 0, 0})},
         Case{"is compressed", {0x28, 0xB5, 0x2F, 0xFD, 0, 0, 0, 0}}}) {
     test::BagMaker maker(file());
     maker.topic(1, "/pose", kPose);
@@ -254,7 +254,7 @@ TEST_F(Bag, WritesWhatItReads) {
   }
   const auto again = write_bag(bag, {poses});
   ASSERT_FALSE(again);
-  EXPECT_NE(again.error().message.find("is there already"), std::string::npos);
+  EXPECT_NE(again.error().message.find("already exists"), std::string::npos);
   EXPECT_FALSE(write_bag("/proc/none/bag", {poses}));
 }
 
