@@ -161,7 +161,7 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create(const std::st
   for (const Segment& segment : segments()) {
     if (segment.run != run || is_next(segment) || remove_if_dead(segment.file)) continue;
     return driver::Error{"A run named \"" + run +
-                         "\" is already shown; end it, or give this one another --name."};
+                         "\" is already shared; end it, or choose another name with --name."};
   }
   return create_as(run, "", bytes);
 }
@@ -178,7 +178,7 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_as(const std:
   if (const int full = posix_fallocate(file, 0, static_cast<off_t>(bytes)); full != 0) {
     errno = full;
     const auto error =
-        trouble("Shared memory of " + std::to_string(bytes) + " bytes cannot be had");
+        trouble("Cannot allocate " + std::to_string(bytes) + " bytes of shared memory");
     close(file);
     return error;
   }
@@ -205,9 +205,9 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_as(const std:
   if (failed == 0) return map(file, bytes, std::move(place), true);
   close(file);
   errno = failed;
-  if (failed != EEXIST) return trouble("Shared memory " + path_of(place.file) + " cannot be made");
+  if (failed != EEXIST) return trouble("Cannot create shared memory " + path_of(place.file));
   return driver::Error{"A run named \"" + run +
-                       "\" is already shown; end it, or give this one another --name."};
+                       "\" is already shared; end it, or choose another name with --name."};
 }
 
 std::string SharedMemory::path() const {
@@ -216,11 +216,11 @@ std::string SharedMemory::path() const {
 
 driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_nameless(std::size_t bytes) {
   const int file = memfd_create("thimble", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  if (file < 0) return trouble("Shared memory cannot be made");
+  if (file < 0) return trouble("Cannot create shared memory");
   if (ftruncate(file, static_cast<off_t>(bytes)) != 0 ||
       fcntl(file, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW) != 0) {
     const auto error =
-        trouble("Shared memory of " + std::to_string(bytes) + " bytes cannot be had");
+        trouble("Cannot allocate " + std::to_string(bytes) + " bytes of shared memory");
     close(file);
     return error;
   }

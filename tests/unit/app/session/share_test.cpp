@@ -781,7 +781,7 @@ TEST(Share, IsForThisUserAloneAndGoneAfterwards) {
     EXPECT_EQ(session::SharedReader::attach(name).value()->name(), name);
     const auto second = session::SharedRun::create(name, small_scene(), 10);
     ASSERT_FALSE(second);
-    EXPECT_NE(second.error().message.find("already shown"), std::string::npos);
+    EXPECT_NE(second.error().message.find("already shared"), std::string::npos);
     bool listed = false;
     for (const session::RunningRun& one : session::running_runs()) listed |= one.name == name;
     EXPECT_TRUE(listed);
