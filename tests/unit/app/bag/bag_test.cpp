@@ -47,7 +47,7 @@ class Bag : public ::testing::Test {
     return encode(BagKind::kPositions, {stamp_ns, frame, p});
   }
 
-  /// Reads positions and expects a sentence that holds each of `parts`.
+  /// Reads positions and expects an error message that contains each of `parts`.
   void expect_refused(const std::vector<std::string>& parts, const std::string& topic = {}) const {
     const auto read = read_bag(file(), BagKind::kPositions, topic);
     ASSERT_FALSE(read);
@@ -67,7 +67,7 @@ TEST_F(Bag, GivesPositionsByTheStampsOfTheirHeaders) {
     maker.message(7, 5, {0, 1, 0, 0});
     maker.message(9, 100, pose(1'700'000'000'500'000'000, {0.01, 0.02, 0.03}));
     maker.message(9, 900, pose(1'700'000'000'510'000'000, {0.04, 0.05, 0.06}));
-    maker.message(9, 950, pose(1'700'000'000'510'000'000, {1, 1, 1}));  // same time: left out
+    maker.message(9, 950, pose(1'700'000'000'510'000'000, {1, 1, 1}));  // same time: ignored
   }
   for (const fs::path& path : {file(), folder_}) {
     const auto read = read_bag(path, BagKind::kPositions);
@@ -131,7 +131,7 @@ TEST_F(Bag, ReadsNumbersInBothOrdersOfBytes) {
   EXPECT_EQ(read->stamp_ns, -1'999'999'995);
   EXPECT_EQ(read->frame, "w");
   EXPECT_EQ(read->value, Eigen::Vector3d(1, 2, 3));
-  // What was written backwards from the start: a time before the epoch keeps its nanoseconds.
+  // A time before the epoch keeps its nanoseconds.
   const auto again = decode(BagKind::kForces, encode(BagKind::kForces, *read));
   ASSERT_TRUE(again);
   EXPECT_EQ(again->stamp_ns, read->stamp_ns);
@@ -186,7 +186,7 @@ TEST_F(Bag, RefusesWhatIsNoBag) {
   expect_refused({"no such bag"});
   std::ofstream(file()) << "time x y z\n0 0 0 0\n";
   expect_refused({"is damaged, or not a ROS bag"});
-  std::ofstream(file(), std::ios::trunc).flush();  // an empty file is an empty data base
+  std::ofstream(file(), std::ios::trunc).flush();  // an empty file is an empty database
   expect_refused({"not a ROS bag", "the tables topics and messages are missing"});
   fs::remove(file());
   const auto none = read_bag(folder_, BagKind::kPositions);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// The first row at which a column is least, by asking every row about every other.
+// Returns the first row with the minimum of a column, by comparing all pairs of rows.
 template <std::size_t kColumns>
 std::size_t first_least(const std::vector<std::array<double, kColumns>>& rows, std::size_t k,
                         double sign) {
@@ -36,7 +36,7 @@ TEST(Extremes, AreTheFirstRowsOfLeastAndMost) {
     std::vector<std::array<double, 3>> rows(1 + random.bits() % 40);
     Extremes<3> extremes;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      for (double& value : rows[i]) value = std::round(random.uniform(-5, 5));  // many are equal
+      for (double& value : rows[i]) value = std::round(random.uniform(-5, 5));  // many equal values
       extremes.take(rows[i], i);
     }
     for (std::size_t k = 0; k < 3; ++k) {

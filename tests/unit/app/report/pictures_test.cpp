@@ -19,7 +19,7 @@
 namespace thimble::report {
 namespace {
 
-// A tetrahedron with a corner at the origin and legs of 50 mm, wound outwards.
+// A tetrahedron with a corner at the origin and legs of 50 mm, oriented outwards.
 render::TriangleMesh tetrahedron() {
   render::TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {0.05, 0, 0}, {0, 0.05, 0}, {0, 0, 0.05}};
@@ -179,10 +179,10 @@ TEST(Pictures, KeepAllLabelsApartAndInsideWhateverTheNumbersAre) {
     std::stringstream script;
     script << std::ifstream(folder / "data/path_on_mesh.gp").rdbuf();
     std::istringstream lines(script.str());
-    double left = 0;   // where the panel stands, of the picture's width
-    double right = 0;  // of the panel before it
+    double left = 0;   // position of the panel, as a fraction of the picture's width
+    double right = 0;  // of the previous panel
     double name_at = 0;
-    for (std::string line; std::getline(lines, line) && line != "unset output";) {  // the PNG's
+    for (std::string line; std::getline(lines, line) && line != "unset output";) {  // of the PNG
       if (line.starts_with("set lmargin")) {
         right = left > 0 ? left : 0;
         left = std::stod(line.substr(line.rfind(' ')));
@@ -201,7 +201,7 @@ TEST(Pictures, KeepAllLabelsApartAndInsideWhateverTheNumbersAre) {
         longest = std::max(longest, end - at - 1);
         at = line.find('\'', end + 1);
       }
-      // The panel's own name comes with the next lines; that of the panel before is at its left.
+      // The name of the panel is in the next lines; that of the previous panel is on its left.
       EXPECT_GE(left * 1800, static_cast<double>(longest) * 14 + 30) << line;
       EXPECT_LT(name_at, left);
     }

@@ -9,11 +9,11 @@ namespace {
 
 constexpr double kTick = 1e-3;
 
-/// A tip on a hand that may hold it, with gravity compensation that may be wrong: a vertical
-/// motion.
+/// Vertical motion of a tip, with or without a hand, and with possibly incorrect gravity
+/// compensation.
 struct Tip {
   double mass = 0.075, weight = 0.7, carried = 0.7, friction = 0.005;  // kg, N, N, N s/m
-  double hand = 0;                                                     ///< N, of the hand, upwards
+  double hand = 0;  ///< Force of the hand upwards, N.
   bool held = false;
   double z = 0, v = 0, fastest = 0, share = 1;
   CarriedTrust trust{};
@@ -90,7 +90,8 @@ TEST(CarriedTrust, IsWholeAgainstTheMotion) {
 }
 
 TEST(CarriedTrust, SharesGiveNoEnergyOverAStroke) {
-  // Up and down at any speed: what the force gives on the way up it takes on the way down.
+  // For a stroke up and down at any speed, the force takes on the way down the energy that it gives
+  // on the way up.
   for (const double speed : {0.1, 0.4, 0.8, 2.0}) {
     CarriedTrust trust;
     driver::DeviceState state;

@@ -17,7 +17,7 @@
 #include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
-// Whole runs, and what the log holds of them.
+// Logs of whole runs.
 
 namespace thimble::session {
 namespace {
@@ -38,7 +38,7 @@ class EventLogTest : public ::testing::Test {
     return session ? std::move(session).value() : nullptr;
   }
 
-  /// Returns what was logged of the run, without the time of day.
+  /// Returns the log of the run without the time of day.
   std::vector<std::string> log() const {
     std::ifstream in(file_);
     std::vector<std::string> lines;
@@ -60,7 +60,7 @@ class EventLogTest : public ::testing::Test {
 TEST_F(EventLogTest, HoldsAFaultOfARunInVirtualTime) {
   auto session = open();
   ASSERT_TRUE(session);
-  // Far more than the arm may give, and after half a second no number at all.
+  // Far above the arm's limit, and NaN after half a second.
   const auto law = [](const driver::DeviceState& state) noexcept {
     driver::ForceCommand command;
     command.f_T_W = {0, 0, state.tick < 500 ? 100.0 : std::nan("")};
@@ -142,7 +142,7 @@ TEST_F(EventLogTest, TellsHowManyEventsItLacks) {
   auto session = open();
   ASSERT_TRUE(session);
   {
-    // In real time the writer looks every 50 ms; a tip that chatters for 8 s of ticks meanwhile.
+    // In real time the writer checks every 50 ms. Meanwhile the tip chatters for 8 s of ticks.
     EventLog log({.name = "two_boxes", .what = "a test", .objects = {}, .real_time = true},
                  session->device());
     driver::TickRecord record;

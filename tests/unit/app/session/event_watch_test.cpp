@@ -17,7 +17,7 @@ using driver::Fault;
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
 
-/// Counters that the test counts.
+/// Counters that the test sets.
 class ScriptedCounters final : public EventCounters {
  public:
   std::uint64_t changes() const noexcept override {
@@ -33,10 +33,10 @@ class ScriptedCounters final : public EventCounters {
   std::array<double, 3> wall_W{};
 };
 
-/// A run whose ticks the test writes, 1 ms apart.
+/// Run whose ticks are created by the test, 1 ms apart.
 class EventWatchTest : public ::testing::Test {
  protected:
-  /// Lets the tick of `record_` come to pass, and begins the next one.
+  /// Passes the tick `record_` to the watch and starts the next one.
   void tick(std::uint64_t periods = 1) {
     watch_.take(record_);
     record_.tick += 1;
@@ -48,7 +48,7 @@ class EventWatchTest : public ::testing::Test {
     for (int i = 0; i < count; ++i) tick();
   }
 
-  /// Returns the events so far and forgets them.
+  /// Returns the events so far and clears them.
   std::vector<TickEvent> events() {
     std::vector<TickEvent> got;
     while (ring_.waiting() > 0) {
@@ -125,7 +125,7 @@ TEST_F(EventWatchTest, NotesALinkThatChangesAfterAnotherFault) {
   record_.link = driver::LinkState::kLost;
   ticks(2);
   EXPECT_EQ(events(), Events({link(2, driver::LinkState::kLost)}));
-  record_.link = driver::LinkState::kSilent;  // of a new link, before its first report
+  record_.link = driver::LinkState::kSilent;  // state of a new link before its first report
   ticks(2);
   EXPECT_EQ(events(), Events());
   record_.link = driver::LinkState::kConnected;
@@ -145,12 +145,12 @@ TEST_F(EventWatchTest, TellsThatAnArmIsActiveFromItsFirstTickOn) {
 
 TEST_F(EventWatchTest, ReportsBeginningAndEndOfAnActivity) {
   ticks(10);
-  for (int i = 0; i < 50; ++i) {  // every other tick, ten to a tick
+  for (int i = 0; i < 50; ++i) {  // ten occurrences in every other tick
     if (i % 2 == 0) counters_.of(Activity::kRiseCut) += 10;
     tick();
   }
   EXPECT_EQ(events(), Events({began(10, Activity::kRiseCut)}));
-  ticks(99);  // the last was tick 58
+  ticks(99);  // the last occurrence was in tick 58
   EXPECT_EQ(events(), Events());
   tick();
   EXPECT_EQ(events(), Events({ended(159, Activity::kRiseCut, 250, 48 * kPeriod_ns)}));
@@ -192,7 +192,7 @@ TEST_F(EventWatchTest, CountsNothingOfBeforeItsTime) {
 
 TEST_F(EventWatchTest, CountsTicksThatWereMissed) {
   tick();
-  tick(4);  // three are missed after it
+  tick(4);  // three ticks are missed after it
   const std::int64_t missed_at = record_.time_ns;
   tick();
   tick(3);
@@ -317,7 +317,7 @@ TEST(EventWords, WarnOfWhatTheUserShouldLookAtWhileItLasts) {
   }
 }
 
-/// The event that a stage changed the force by so many percent.
+/// Returns the event that a stage changed the force by `percent` percent.
 TickEvent changed(std::uint64_t tick, Activity activity, std::uint64_t percent) {
   return {.tick = tick,
           .time_ns = static_cast<std::int64_t>(tick) * kPeriod_ns,

@@ -18,7 +18,7 @@ TEST(HeldKey, OnePressHoldsNothing) {
 }
 
 TEST(HeldKey, RepeatedKeyIsHeld) {
-  // Delay, then repeats: of a desktop, a Linux console, a slow one.
+  // Delay and repeat interval of a desktop, a Linux console, and a slow keyboard.
   for (const std::int64_t every : {33, 40, 92, 110}) {
     HeldKey key;
     std::int64_t now = 1000 * kMs;

@@ -28,7 +28,7 @@ std::vector<std::string> lines_of(const fs::path& file) {
   return lines;
 }
 
-/// Returns what is said on standard error meanwhile.
+/// Returns the output on standard error of `work`.
 template <class Work>
 std::string said_by(Work&& work) {
   testing::internal::CaptureStderr();
@@ -44,7 +44,7 @@ class LogTest : public ::testing::Test {
     setenv("XDG_STATE_HOME", folder_.c_str(), 1);
   }
 
-  /// Says a word of each level.
+  /// Logs one message of each level.
   static void say_everything(spdlog::logger& logger) {
     logger.trace("a trace");
     logger.debug("a detail");
@@ -190,7 +190,7 @@ TEST_F(LogTest, AFileThatTheUserNamedMustBeOneThatCanBeWritten) {
   EXPECT_FALSE(begin_log({.file = folder_}));
 }
 
-// What a name from a file could do to a terminal or to a log that is shown on one.
+// Names from files must not control a terminal, directly or through a log shown on it.
 constexpr const char* kHostile = "a\x1b]0;title\a\x1b[31m\r\xC2\x9Bm\xE2\x80\xAE\xFFz";
 constexpr const char* kShown = "a?]0;title??[31m??m??z";
 

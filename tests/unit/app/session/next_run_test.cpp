@@ -25,7 +25,7 @@ namespace {
 const std::filesystem::path kSource(THIMBLE_SOURCE_DIR);
 const std::atomic<bool> kGoesOn{false};
 
-/// A run of the rubber ball, of a file of its own, that viewers in this process look on.
+/// Run of a copy of the rubber ball's scene file, with viewers in this process.
 class NextRunTest : public ::testing::Test {
  protected:
   NextRunTest() {
@@ -37,7 +37,7 @@ class NextRunTest : public ::testing::Test {
     options_.restarts = true;
   }
 
-  /// Writes the scene with this stiffness (N/m).
+  /// Writes the scene with the given stiffness (N/m).
   void write(const std::string& stiffness) {
     std::string text = scene::text_of(kSource / "app/scenes/rubber.yaml");
     text.replace(text.find("400"), 3, stiffness);
@@ -51,7 +51,7 @@ class NextRunTest : public ::testing::Test {
             loop, speed};
   }
 
-  /// Prepares what comes next, which nobody sees yet.
+  /// Prepares the next run, not yet visible to viewers.
   driver::Result<std::unique_ptr<Session>> prepare_unseen(
       const std::filesystem::path& scene) const {
     SessionOptions unseen = options_;
@@ -69,7 +69,7 @@ class NextRunTest : public ::testing::Test {
     return hash.value();
   }
 
-  /// Returns what a run in virtual time feels that nobody looks at.
+  /// Returns the ticks of a run in virtual time without viewers.
   std::uint64_t hash_alone() const {
     SessionOptions alone;
     alone.duration = options_.duration;
@@ -116,7 +116,7 @@ TEST_F(NextRunTest, FeelsTheSameToTheBitAtAnyPaceAndTickByTick) {
   EXPECT_FALSE(viewer->ask_steps(1)) << "it is not paused";
   viewer->ask_pause(true);
   std::thread servo([&] { session->run(next.ended()); });
-  // Wall time is waited for here, and never judged.
+  // The test waits in wall time but does not measure it.
   const auto wait_for = [](auto condition) {
     while (!condition()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   };
@@ -132,7 +132,7 @@ TEST_F(NextRunTest, FeelsTheSameToTheBitAtAnyPaceAndTickByTick) {
     EXPECT_EQ(viewer->counters().ticks, before + ticks);
     EXPECT_EQ(viewer->state(), RunState::kPaused);
   }
-  // More than anybody means, written by somebody else.
+  // An implausible number of steps, as another program might write.
   auto& live = *reinterpret_cast<SharedLive*>(session->shared()->memory().bytes().data() +
                                               kSharedLiveOffset);
   const std::uint64_t before = viewer->counters().ticks;
@@ -203,7 +203,7 @@ TEST_F(NextRunTest, KeepsRequestsMadeDuringPreparation) {
       [&](const std::filesystem::path& scene) {
         ++prepared;
         auto session = prepare_unseen(scene);
-        // While the ball is prepared, somebody asks for something else.
+        // While the ball is prepared, a viewer sends another request.
         if (prepared == 1) {
           EXPECT_TRUE(viewer->ask_restart(asked_meanwhile));
           EXPECT_TRUE(viewer->ask_loop(true));
@@ -219,7 +219,7 @@ TEST_F(NextRunTest, KeepsRequestsMadeDuringPreparation) {
   next.step(false);
   EXPECT_TRUE(next.ended());
   EXPECT_EQ(prepared, 2) << "beside the run, which goes on";
-  // The servo may run on for a while; what is asked of it now could only be lost.
+  // The servo may continue for a while; requests to it would be lost now.
   EXPECT_FALSE(viewer->heard());
   const auto late = viewer->ask_restart();
   ASSERT_FALSE(late);
@@ -353,7 +353,7 @@ TEST_F(NextRunTest, DoesNothingOfItWithAPhysicalArm) {
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().message.find("physical arm"), std::string::npos);
   }
-  // Whatever stands in the memory.
+  // Whatever the memory contains.
   auto& live = *reinterpret_cast<SharedLive*>(session->shared()->memory().bytes().data() +
                                               kSharedLiveOffset);
   NextRun next = next_of(true, true);

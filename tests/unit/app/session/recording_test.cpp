@@ -45,7 +45,7 @@ std::filesystem::path scratch(const char* name) {
   return support::scratch_folder() / name;
 }
 
-/// Makes a tick with something else in every field.
+/// Makes a tick with a different value in every field.
 TickRecord tick_number(std::uint64_t number) {
   std::mt19937_64 random(number + 1);
   std::uniform_real_distribution<double> value(-1, 1);
@@ -95,7 +95,7 @@ TEST(RecordingColumns, HoldEveryByteOfATickButPadding) {
     bytes += column.bytes();
   // 4 long counters, 3 counts, 24 + 3 doubles, 8 floats, a triangle, 4 short numbers, 7 flags.
   EXPECT_EQ(bytes, 4 * 8 + 3 * 4 + 27 * 8 + 8 * 4 + 4 + 4 * 2 + 7U);
-  // Padding: 4 bytes behind the counts, 5 behind the flags.
+  // Padding: 4 bytes after the counts, 5 after the flags.
   EXPECT_EQ(sizeof(TickRecord) - bytes, 9U) << "a field of TickRecord is in no column";
 }
 
@@ -128,7 +128,7 @@ TEST(Recording, OfAnOlderProgramHasNoHeatAndNoOrientation) {
   ASSERT_TRUE(recorder) << recorder.error().message;
   for (std::uint64_t i = 0; i < 10; ++i) (**recorder)(tick_number(i));
   ASSERT_TRUE((*recorder)->finish());
-  // The column under another name is one that nobody knows.
+  // The renamed column is unknown.
   std::ifstream in(path, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   for (const std::string column : {"heat", "q_WT", "gimbal", "gripper", "has_gripper"}) {
@@ -166,7 +166,8 @@ TEST(Recording, IsAsShortAsTheRunWas) {
   }
 }
 
-// A recording of 10 hours, killed by SIGKILL at any moment, opens and lacks less than 100 ms.
+// A recording with room for 10 hours, killed by SIGKILL at any time, can be opened and lacks less
+// than 100 ms.
 TEST(Recording, KilledRunLosesLessThan100ms) {
   for (const int ticks : {400, 437, 5'500}) {
     const auto path = scratch("killed.h5");
@@ -188,7 +189,7 @@ TEST(Recording, KilledRunLosesLessThan100ms) {
     }
     close(pipe_ends[1]);
     std::int64_t last = 0;
-    // The child tells each tick it recorded; it is killed somewhere in the middle of its work.
+    // The child reports each recorded tick; it is killed at an arbitrary time.
     for (int i = 0; i < ticks; ++i) {
       ASSERT_EQ(read(pipe_ends[0], &last, sizeof last), static_cast<ssize_t>(sizeof last));
     }
@@ -224,13 +225,13 @@ TEST(Recording, OnAFullDiskEndsWithItsReasonAndKeepsWhatItHas) {
     if (!recorder) _exit(2);
     for (std::uint64_t i = 0; i < 1000; ++i) (**recorder)(tick_number(i));
     (*recorder)->serve();
-    // From here on the system refuses to write beyond the file's first bytes, as a full disk does.
+    // From here on the system rejects writes beyond the first bytes of the file, as on a full disk.
     std::signal(SIGXFSZ, SIG_IGN);
     const rlimit none{1, 1};
     if (setrlimit(RLIMIT_FSIZE, &none) != 0) _exit(3);
     for (std::uint64_t i = 1000; i < 20'000; ++i) {
       (**recorder)(tick_number(i));
-      if (i % 100 == 0) (*recorder)->serve();  // finds room, whatever the disk says
+      if (i % 100 == 0) (*recorder)->serve();  // the ring has room, whatever the disk reports
     }
     if ((*recorder)->dropped() != 0) _exit(4);
     const auto finished = (*recorder)->finish();
@@ -273,7 +274,7 @@ constexpr bool kForksBesideThreads = false;
 constexpr bool kForksBesideThreads = true;
 #endif
 
-// The first room is small, so that the file grows many times.
+// The initial capacity is small, so that the file grows many times.
 TEST(Recording, GrowsAsItIsWritten) {
   const auto path = scratch("grows.h5");
   constexpr std::uint64_t kTicks = 5000;
@@ -287,7 +288,7 @@ TEST(Recording, GrowsAsItIsWritten) {
       const auto appended = file->append(ticks);
       ASSERT_TRUE(appended) << appended.error().message;
       ticks.clear();
-      // It can be read at any moment, also while a thread lays out the larger file.
+      // The file can be read at any time, also while a thread creates the larger one.
       if (kForksBesideThreads && i % 1000 > 976) {
         const auto now = session::read_recording(path);
         ASSERT_TRUE(now) << now.error().message;
@@ -323,7 +324,7 @@ TEST(Recording, IsReadWhileAnotherThreadMakesOne) {
   EXPECT_EQ(refused, 0);
 }
 
-// A file system without holes (FAT) has no room for a whole day at once.
+// A file system without sparse files (FAT) has no space for a whole day at once.
 TEST(Recording, OfAWholeDayBeginsSmall) {
   const auto path = scratch("day.h5");
   const auto recorder = session::Recorder::open(path, kInfo, 86'400'000);
@@ -452,7 +453,7 @@ TEST(Recording, FileOfAnotherKindIsKept) {
 
 TEST(Recording, IsReplacedOnlyIfThatIsAllowed) {
   const auto again = scratch("again.h5");
-  std::ofstream(again).flush();  // an empty file holds nothing to lose
+  std::ofstream(again).flush();  // an empty file contains nothing to lose
   EXPECT_TRUE(session::Recorder::open(again, kInfo, 10));
   const auto refused = session::Recorder::open(again, kInfo, 10);
   ASSERT_FALSE(refused);
@@ -483,7 +484,7 @@ TEST(Recording, SaysWhatAFileIsNot) {
             std::string::npos);
 }
 
-// Whatever byte of a recording is wrong: it is read, or refused with a sentence.
+// A recording with any damaged byte is read or rejected with an error.
 TEST(Recording, WithAnyByteDamagedIsReadOrRefused) {
 #if defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "no threads meet here, and damaged files ask for more memory than it can give";
@@ -513,7 +514,7 @@ TEST(Recording, WithAnyByteDamagedIsReadOrRefused) {
       EXPECT_LE(read->ticks.size(), 4U);
     }
   }
-  // A damaged number is read, and an unsound tick left out; only a damaged table is refused.
+  // A damaged number is read, and an invalid tick is omitted; only a damaged table is an error.
   EXPECT_GT(refused, 0);
 }
 
@@ -578,7 +579,7 @@ TEST(BlackBox, KeepsTheSecondsBeforeAFaultUntilTheyAreTaken) {
   run(20'000, driver::Fault::kNone);
   EXPECT_FALSE(box.full());
   EXPECT_TRUE(box.release().empty());
-  run(30'000, driver::Fault::kOverSpeed);  // long after the fault nothing is overwritten
+  run(30'000, driver::Fault::kOverSpeed);  // nothing is overwritten long after the fault
   ASSERT_TRUE(box.full());
   const auto kept = box.release();
   ASSERT_EQ(kept.size(), 8500U);
@@ -586,7 +587,7 @@ TEST(BlackBox, KeepsTheSecondsBeforeAFaultUntilTheyAreTaken) {
   EXPECT_EQ(kept.back().tick, 20'500U);
   EXPECT_EQ(kept[kept.size() - 502].fault, driver::Fault::kNone);
   EXPECT_EQ(kept[kept.size() - 501].fault, driver::Fault::kOverSpeed);
-  run(1000, driver::Fault::kOverSpeed);  // the same fault is not told twice
+  run(1000, driver::Fault::kOverSpeed);  // the same fault is not reported twice
   EXPECT_FALSE(box.full());
   run(1000, driver::Fault::kNone);
   run(10, driver::Fault::kNoReports);  // the run ends soon after a second fault

@@ -1,5 +1,5 @@
-// What changes the answer of a scene beyond its file is in the recording, so that a replay repeats
-// it.
+// A recording contains every option that changes the forces of a scene, so that a replay repeats
+// them.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ class ReplayOptions : public ::testing::Test {
  protected:
   void SetUp() override { std::filesystem::current_path(THIMBLE_SOURCE_DIR); }
 
-  /// Runs a session; between its ticks `meanwhile` may act. Returns its recording.
+  /// Runs a session and calls `meanwhile` between the ticks. Returns its recording.
   template <class Meanwhile>
   static session::Recording recorded(const std::string& scene, session::SessionOptions options,
                                      Meanwhile&& meanwhile) {
@@ -89,7 +89,7 @@ TEST_F(ReplayOptions, TurnedKnobRepeats) {
           return knob.name.find("stiffness") != std::string::npos;
         });
         ASSERT_NE(stiffness, knobs.end());
-        // Turned, turned back on its way, and turned in contact.
+        // Changed, reversed during the change, and changed in contact.
         if (tick == 500) {
           EXPECT_TRUE(run.turn_knob(stiffness->name, stiffness->most));
         }
@@ -99,7 +99,7 @@ TEST_F(ReplayOptions, TurnedKnobRepeats) {
       });
   const auto turned = std::count_if(recording.ticks.begin(), recording.ticks.end(),
                                     [](const auto& tick) { return tick.setting >= 0; });
-  EXPECT_EQ(turned, 2);  // the third is where it was already
+  EXPECT_EQ(turned, 2);  // the third has this value already
   expect_repeats(recording);
 }
 

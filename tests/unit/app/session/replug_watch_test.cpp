@@ -15,18 +15,19 @@ namespace {
 
 using driver::Fault;
 
-/// A loop over an arm that pushes all the time, watched over ten times a second of its own time.
+/// Loop of an arm with a constant force, with a watch that checks ten times per second of the
+/// loop's time.
 class ReplugWatchTest : public ::testing::Test {
  protected:
-  /// What is true of one wire.
+  /// State of one link.
   struct Wire {
     std::array<std::int16_t, 6> counts{};
     bool lost = false;
     bool silent = false;
-    int carried_to = -1;  // the hand carries the first counter there; below 0: nowhere
+    int carried_to = -1;  // the hand moves the first counter there; below 0: no motion
 
     void carry() {
-      constexpr int kStep = 30;  // counts a tick: 0.7 m/s
+      constexpr int kStep = 30;  // counts per tick: 0.7 m/s
       if (carried_to < 0) return;
       counts[0] = static_cast<std::int16_t>(counts[0] +
                                             std::clamp(carried_to - int{counts[0]}, -kStep, kStep));
@@ -92,7 +93,7 @@ class ReplugWatchTest : public ::testing::Test {
                           .tell = [this](const std::string& line) { told_.push_back(line); }});
   }
 
-  /// Runs 100 ticks of a millisecond, then lets the watch look once; `times` times.
+  /// Runs 100 ticks of a millisecond, then one check of the watch; `times` times.
   void pass(int times) {
     struct Push {
       driver::ForceCommand operator()(const driver::DeviceState&) noexcept {
@@ -141,7 +142,7 @@ TEST_F(ReplugWatchTest, AsksForTheHomePoseAndGivesForceOnlyThere) {
   pass(2);
   EXPECT_TRUE(told("Force is off (transport_lost)"));
   EXPECT_EQ(force(), 0);
-  second_.counts = {1500, 0, 0, 0, 0, 0};  // plugged in where it was not at home, then put there
+  second_.counts = {1500, 0, 0, 0, 0, 0};  // connected away from its home pose, then moved there
   plugged_ = true;
   pass(12);
   EXPECT_EQ(opened_, 1);
@@ -183,7 +184,7 @@ TEST_F(ReplugWatchTest, ChecksTheWorkspaceAfterAnyFault) {
   pass(3);
   EXPECT_TRUE(told("outside of the workspace"));
   EXPECT_EQ(force(), 0);
-  first_.carried_to = 1500;  // inside, and not at home: it kept its counters
+  first_.carried_to = 1500;  // inside, and not at home: its counters did not restart
   pass(6);
   enter_ = true;
   pass(6);
@@ -237,7 +238,7 @@ TEST_F(ReplugWatchTest, AsksForTheHomePoseAfterARestartOfTheBoard) {
   EXPECT_GT(force(), 0.4);
   first_.silent = true;
   pass(5);
-  first_.counts = {0, 0, 0, 0, 0, 0};  // where it stands, 42 mm away from its home pose
+  first_.counts = {0, 0, 0, 0, 0, 0};  // in its pose, 42 mm away from its home pose
   first_.silent = false;
   pass(1);
   EXPECT_TRUE(told("Move it to its home pose and press Enter"));
@@ -247,7 +248,7 @@ TEST_F(ReplugWatchTest, AsksForTheHomePoseAfterARestartOfTheBoard) {
   pass(6);
   EXPECT_TRUE(told("mm away from its home pose"));
   EXPECT_EQ(force(), 0) << "its tip and its Jacobian are wrong";
-  first_.counts = {};  // put into its home pose, and switched on again there
+  first_.counts = {};  // moved to its home pose and switched on there
   pass(2);
   enter_ = true;
   pass(6);

@@ -1,5 +1,4 @@
-// The loop of a run over a wire that is written here: who is told of a tick, when and in which
-// order.
+// The loop of a run over a link of the test: when and in which order its observers are called.
 #include "run_loop.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +16,7 @@
 namespace thimble {
 namespace {
 
-/// A wire whose arm always reports to be at home.
+/// Link of an arm that always reports its home pose.
 class HomeTransport final : public driver::Transport {
  public:
   explicit HomeTransport(int& messages) : messages_(messages) {}
@@ -37,7 +36,7 @@ class HomeTransport final : public driver::Transport {
 
 class RunLoopTest : public ::testing::Test {
  protected:
-  /// Notes in which order observers were told, and what had been sent by then.
+  /// Records the order of the observers' calls, and the messages sent before.
   class Witness final : public session::TickObserver {
    public:
     Witness(RunLoopTest& test, int number) : test_(test), number_(number) {}

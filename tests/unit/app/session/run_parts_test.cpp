@@ -1,5 +1,5 @@
-// What `thimble run` does around a run, part by part: which arm, whether a viewer opens, what the
-// user is told, and how the program ends.
+// Parts of `thimble run` outside of the run: choice of the arm, opening of a viewer, messages to
+// the user, and exit code.
 #include <gtest/gtest.h>
 
 #include <string>

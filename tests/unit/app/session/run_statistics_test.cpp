@@ -78,7 +78,7 @@ TEST(RunStatistics, CountsTouchDownsAndTimeInContact) {
     statistics.take(tick(i * 1'000'000LL, touching));
   }
   EXPECT_EQ(statistics.contacts(), 3U);
-  EXPECT_EQ(statistics.interruptions(), 1U);  // 5 ms of air are no lifting off
+  EXPECT_EQ(statistics.interruptions(), 1U);  // 5 ms without contact do not count as lifting off
   EXPECT_NEAR(statistics.contact_time(), 0.395, 1e-12);
   EXPECT_NEAR(statistics.duration(), 0.999, 1e-12);
   EXPECT_NEAR(statistics.rate(), 1000, 1e-9);

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 const fs::path kSources(THIMBLE_SOURCE_DIR);
 
-/// Runs of scenes whose files are a user's own, and the user's own folder.
+/// Runs of scene files of the user, with the user's scene folder.
 class SaveKnobs : public ::testing::Test {
  protected:
   SaveKnobs() {
@@ -39,7 +39,7 @@ class SaveKnobs : public ::testing::Test {
     return file;
   }
 
-  /// Shows a scene's run and returns its viewer.
+  /// Shares a run of a scene and returns its viewer.
   SharedReader& view(const fs::path& file) {
     reader_.reset();
     session_ = Session::prepare(file, {.share = true}).value();
@@ -114,7 +114,7 @@ TEST_F(SaveKnobs, NeverWriteOverASceneThatCameWithThimble) {
   ASSERT_TRUE(saved) << saved.error().message;
   EXPECT_EQ(saved->file, folder_ / "data/thimble/scenes/clay-turned.yaml");
   EXPECT_EQ(scene::text_of(shipped), before);
-  view(saved->file);  // with its mesh and its arm, which lie elsewhere
+  view(saved->file);  // with its mesh and its arm, which are in other folders
   EXPECT_EQ(knob("ball: stiffness"), 500);
 }
 

@@ -1,4 +1,4 @@
-// Many runs of one scene side by side: each is, to the bit, what it is alone.
+// Many runs of one scene in a batch: each is bit-identical to a single run.
 #include "thimble/session/session_batch.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ class SessionBatchTest : public ::testing::Test {
 };
 
 TEST_F(SessionBatchTest, EachRunIsToTheBitWhatItIsAlone) {
-  // A shape, a mesh with friction that flows, a body that moves.
+  // A shape, a mesh with friction, a body that moves.
   for (const char* scene : {"rubber", "clay", "floating_block"}) {
     constexpr std::size_t kRuns = 3;
     const auto batch = open(scene, kRuns, {.seed = 7, .keep = session::Keep::kNewest});

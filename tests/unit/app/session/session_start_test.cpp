@@ -1,5 +1,5 @@
-// The order of a start with a real arm, whose wire is written here: all that takes time is done
-// before the arm is opened, and no force comes before its pose was looked at.
+// The start of a session with a real arm over a link of the test. All slow steps come before the
+// arm is opened, and no force is sent before its pose was checked.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -52,7 +52,7 @@ class SessionStart : public ::testing::Test {
     options_.terms->arm.path = file;
     options_.terms->arm.file = *scene::load_arm(file);
     options_.record = support::scratch_folder() / "start.h5";
-    options_.overwrite = true;  // of the test before
+    options_.overwrite = true;  // from the previous test
     options_.share = true;
     options_.open_link = [this](
                              const scene::ArmFile&,
@@ -87,7 +87,7 @@ TEST_F(SessionStart, OpensTheArmAfterAllThatTakesTimeAndLeavesItIdle) {
   EXPECT_EQ(opened_, 1);
   EXPECT_TRUE(ready_) << "something was not there yet when the arm was opened";
   EXPECT_EQ(session_->device().stage(), driver::DeviceStage::kIdle);
-  // Whoever runs it without letting forces through gets none.
+  // A run without `activate` sends no force.
   std::atomic<bool> stop{false};
   for (int tick = 0; tick < 20; ++tick) session_->step(stop);
   EXPECT_EQ(forced_, 0);

@@ -1,4 +1,4 @@
-// A session as a program of somebody else's uses it: by its public headers alone.
+// Sessions as used by other programs, through the public headers only.
 #include "thimble/session/session.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 
 using driver::TickRecord;
 
-/// Lets shipped scenes and arms be found from wherever the test runs.
+/// Makes the shipped scenes and arms available in any working folder.
 class SessionTest : public ::testing::Test {
  protected:
   void SetUp() override { std::filesystem::current_path(THIMBLE_SOURCE_DIR); }
@@ -38,7 +38,7 @@ class SessionTest : public ::testing::Test {
   }
 };
 
-/// Counts ticks and remembers the last.
+/// Counts ticks and stores the last one.
 class Counter final : public session::TickObserver {
  public:
   void take(const TickRecord& record) noexcept override {
@@ -49,7 +49,7 @@ class Counter final : public session::TickObserver {
   TickRecord last;
 };
 
-/// Half of the scene's force, and nothing besides.
+/// Half of the scene's force.
 struct HalfTheForce {
   render::SceneTouch& scene;
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
@@ -271,7 +271,7 @@ TEST_F(SessionTest, LetsItsLawPrepareTicksInRealTimeAlone) {
   run();
   EXPECT_EQ(law.prepared, 0u);
   options.clock = session::ClockKind::kWall;
-  // On a machine that is busy every tick of a run may be late, which leaves no time to prepare.
+  // On a busy machine every tick of a run may be late, so that no time remains to prepare.
   for (int tries = 0; law.prepared == 0 && tries < 100; ++tries) run();
   EXPECT_GT(law.prepared, 0u);
 }

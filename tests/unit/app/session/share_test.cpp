@@ -35,7 +35,7 @@ namespace {
 
 using driver::TickRecord;
 
-/// Makes a scene of a triangle, a shaped one with two sides whose edges may be split, and a knob.
+/// Makes a scene with a triangle, a two-sided shaped one whose edges may be split, and a knob.
 session::SharedScene small_scene() {
   session::SharedScene scene;
   scene.name = "small";
@@ -64,12 +64,12 @@ session::SharedScene small_scene() {
   return scene;
 }
 
-/// Gives a name that no other test has at the moment.
+/// Returns a name that no other test uses meanwhile.
 std::string name_for(const char* test) {
   return std::string(test) + "-" + std::to_string(getpid());
 }
 
-/// Gives an object's mesh as it was described.
+/// Returns an object's mesh as described.
 render::TriangleMesh mesh_of(const session::SharedScene& scene, std::size_t number) {
   const auto& object = scene.objects[number];
   render::TriangleMesh mesh;
@@ -86,7 +86,7 @@ render::TriangleMesh mesh_of(const session::SharedScene& scene, std::size_t numb
   return mesh;
 }
 
-/// Makes a tick all of whose numbers follow from one, so that a torn one shows.
+/// Makes a tick in which all values follow from one number, so that a torn read is detected.
 TickRecord tick_number(std::uint64_t number) {
   TickRecord tick;
   tick.tick = number;
@@ -115,7 +115,7 @@ struct Pair {
   std::unique_ptr<session::SharedReader> reader;
 };
 
-/// Joins a run and a reader over memory without a name.
+/// Connects a run and a reader through memory without a name.
 Pair joined(const session::SharedScene& scene, std::size_t ring_ticks = 100) {
   Pair pair;
   pair.run = session::SharedRun::create("", scene, ring_ticks).value();
@@ -170,7 +170,7 @@ TEST(Share, ShowsTheNewestTickAndThoseBefore) {
   ASSERT_EQ(ticks.size(), 4U);
   for (std::uint64_t i = 0; i < 4; ++i) EXPECT_EQ(ticks[i].tick, i);
 
-  // A reader that sleeps while the ring goes round is told how many it has missed.
+  // A reader that sleeps while the ring wraps around gets the number of missed ticks.
   ticks.clear();
   for (std::uint64_t i = 4; i < 29; ++i) pair.run->store_tick(tick_number(i));
   EXPECT_EQ(pair.reader->ticks_since(serial, ticks), 15U);
@@ -204,7 +204,7 @@ TEST(Share, CountsATickOfAPauseApartAndMissesNoneThen) {
     pair.run->store_tick(tick_number(6));
     const auto counters = pair.reader->counters();
     EXPECT_EQ(counters.ticks, 4U);
-    // Simulated time stands in a pause: what ticks then was let go on, tick by tick.
+    // Simulated time stops in a pause, so ticks in a pause are single steps.
     EXPECT_EQ(counters.paused, wall ? 2U : 0U);
     EXPECT_EQ(counters.missed, wall ? 0U : 3U);
   }
@@ -254,7 +254,7 @@ TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
   std::vector<std::thread> readers;
   for (int i = 0; i < 3; ++i) {
     readers.emplace_back([&] {
-      // Over the same mapping, so that the thread sanitizer sees both sides.
+      // Both sides use the same mapping, so that the thread sanitizer can check them.
       const auto reader = session::SharedReader::over(pair.run->memory().bytes()).value();
       std::uint64_t serial = 0;
       std::vector<TickRecord> ticks;
@@ -351,7 +351,7 @@ TEST(Share, ShowsTrianglesThatWereSplitForGood) {
   EXPECT_EQ(mesh.triangles, once);
   ASSERT_EQ(mesh.vertices.size(), 4U);
   EXPECT_EQ(mesh.vertices[3], Eigen::Vector3d(1, 2, 3));
-  // From where it was, and from the first shape anew.
+  // From the previous shape, and again from the initial one.
   pair.run->store_vertex(4, {4, 5, 6});
   pair.run->store_split(1, {.vertex = 4, .ends = {2, 3}, .triangles = {0, 2}, .others = {4, 5}});
   pair.run->store_split(2, {});  // there is none
@@ -428,7 +428,7 @@ TEST(Share, CarriesWhatViewersAskFor) {
   EXPECT_FALSE(pair.reader->lead_hand({std::numeric_limits<double>::infinity(), 0, 0}, true));
 }
 
-/// Lets a child process do something with a run's memory and die by SIGKILL.
+/// Runs `work` on a run's memory in a child process, which then dies by SIGKILL.
 template <class Work>
 void in_a_viewer_that_is_killed(Work work) {
   const pid_t viewer = fork();
@@ -441,24 +441,24 @@ void in_a_viewer_that_is_killed(Work work) {
   ASSERT_TRUE(WIFSIGNALED(status));
 }
 
-/// Lets a viewer of its own do something with a run in a child process, and die by SIGKILL.
+/// Runs `work` with a separate viewer in a child process, which then dies by SIGKILL.
 template <class Work>
 void viewer_that_is_killed(const Pair& pair, Work work) {
   in_a_viewer_that_is_killed([&] {
     const auto own = session::SharedReader::over(pair.run->memory().again().value()).value();
     work(*own);
-    raise(SIGKILL);  // with its place
+    raise(SIGKILL);  // including its place
   });
 }
 
-/// Gives what viewers ask of a run, as it lies in the memory.
+/// Returns the requests of viewers in the memory of a run.
 session::SharedRequests& requests_of(const Pair& pair) {
   return reinterpret_cast<session::SharedLive*>(pair.run->memory().bytes().data() +
                                                 session::kSharedLiveOffset)
       ->requests;
 }
 
-/// Leaves a snapshot as a writer does that is killed in the middle: its first word is odd.
+/// Leaves a snapshot as a writer that is killed while writing: its first word is odd.
 template <class T>
 void tear(driver::Snapshot<T>& snapshot) {
   auto& sequence = *reinterpret_cast<std::atomic<std::uint64_t>*>(&snapshot);
@@ -612,8 +612,8 @@ TEST(Share, ForgetsViewersThatDied) {
   EXPECT_EQ(pair.run->viewers().size(), 1U) << "the reader of this test";
 }
 
-/// A file in the folder of shared memory that is none, for as long as this lives; what hangs on it
-/// is ended by SIGALRM.
+/// A file in the folder of shared memory that is not shared memory; removed by the destructor. A
+/// process that hangs on it is ended by SIGALRM.
 class WrongFile {
  public:
   explicit WrongFile(std::string path) : path_(std::move(path)) {
@@ -700,8 +700,8 @@ TEST(Share, FileOfAnotherUserDoesNotStopRun) {
   unlink(path.c_str());
 }
 
-/// Runs `work` in a PID namespace of its own with the same /dev/shm, as a container has it that
-/// shares the host's IPC. Returns its exit code; none where the kernel forbids such a namespace.
+/// Runs `work` in a separate PID namespace with the same /dev/shm, as in a container that shares
+/// the host's IPC. Returns its exit code; empty if the kernel forbids such a namespace.
 template <class Work>
 std::optional<int> in_another_pid_namespace(Work work) {
   constexpr int kForbidden = 99;
@@ -799,7 +799,7 @@ TEST(Share, NamePassesToTheNextRunWithoutAGap) {
   session::SharedScene other = small_scene();
   other.name = "other";
   {
-    // Complete, but not yet in its place: nobody sees it, and who looks finds the run before.
+    // Complete, but without its name yet: it is invisible, and viewers find the previous run.
     const auto memory = session::SharedMemory::create_next(run->memory(), 1 << 20).value();
     int listed = 0;
     for (const session::RunningRun& one : session::running_runs()) {
@@ -839,7 +839,7 @@ TEST(Share, TellsThatARunWasKilledAndClearsItAway) {
   ASSERT_EQ(pipe(pipe_ends.data()), 0);
   const pid_t child = fork();
   if (child == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that fails leaves nobody behind
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a failing test leaves no process behind
     const auto run = session::SharedRun::create(name, small_scene(), 10).value();
     run->set_state(session::RunState::kRunning);
     static_cast<void>(write(pipe_ends[1], "x", 1));
@@ -861,7 +861,7 @@ TEST(Share, TellsThatARunWasKilledAndClearsItAway) {
   EXPECT_TRUE(session::SharedRun::create(name, small_scene(), 10));
 }
 
-/// Gives a copy of a run's memory, aligned as the real one.
+/// Returns a copy of a run's memory, aligned as the original.
 struct Copy {
   explicit Copy(std::span<const std::byte> from)
       : words(from.size() / 8 + 8), bytes(aligned(), from.size()) {
@@ -875,7 +875,7 @@ struct Copy {
   std::span<std::byte> bytes;
 };
 
-/// Asks a reader everything there is to ask.
+/// Calls all functions of a reader.
 void read_all(session::SharedReader& reader) {
   TickRecord tick;
   static_cast<void>(reader.newest(tick));
@@ -908,7 +908,7 @@ void read_all(session::SharedReader& reader) {
 TEST(Share, RefusesAnotherLayoutBeforeAnythingElse) {
   const Pair pair = joined(small_scene());
   Copy copy(pair.run->memory().bytes());
-  // Nothing but the two words that stay where they are makes sense.
+  // Only the two words with fixed offsets are valid.
   std::memset(copy.bytes.data() + sizeof(std::uint64_t), 0x41, copy.bytes.size() - 8);
   const auto reader = session::SharedReader::over(copy.bytes);
   ASSERT_FALSE(reader);
@@ -928,7 +928,7 @@ TEST(Share, RefusesEveryFlippedByteOfWhatDoesNotChange) {
   for (std::size_t at = 0; at < sizeof(session::SharedHead); ++at) refused(at);
   for (std::size_t at = head.objects.offset;
        at < head.triangles.offset + head.triangles.count * sizeof(session::SharedTriangle); ++at) {
-    // Between two tables there are bytes that nobody reads.
+    // The bytes between two tables are not read.
     for (const auto& [table, size] : {std::pair(head.objects, sizeof(session::SharedObject)),
                                       std::pair(head.knobs, sizeof(session::SharedKnob)),
                                       std::pair(head.vertices, sizeof(session::SharedVertex)),
@@ -984,7 +984,7 @@ TEST(Share, OutlivesMemoryThatIsCutShortUnderIt) {
   read_all(*reader);
   EXPECT_TRUE(reader->died());
   EXPECT_EQ(reader->state(), session::RunState::kEnded);
-  run->store_tick(tick_number(150));  // nor does the servo die of it
+  run->store_tick(tick_number(150));  // the servo survives it too
   EXPECT_TRUE(run->memory().broken());
   EXPECT_FALSE(session::SharedReader::attach(name)) << "nobody else attaches to it";
 }

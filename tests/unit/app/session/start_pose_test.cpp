@@ -82,10 +82,10 @@ TEST(StartPose, NeverLetsThroughWhatIsNoNumber) {
   }
 }
 
-/// An arm that reports what the test says, and a user who does what the test says.
+/// Arm and user that follow the script of the test.
 class WaitForStartPose : public ::testing::Test {
  protected:
-  /// An arm that answers every look.
+  /// Link of an arm that reports in every tick.
   class Answering final : public driver::Transport {
    public:
     explicit Answering(WaitForStartPose& test) : test_(test) {}
@@ -156,12 +156,13 @@ TEST_F(WaitForStartPose, SendsZeroForceWhileWaiting) {
   };
   EXPECT_TRUE(*wait());
   EXPECT_EQ(looks_, 70);
-  ASSERT_EQ(told_.size(), 2u);  // at first, and after the Enter that came too early
+  ASSERT_EQ(told_.size(), 2u);  // at the start, and after the Enter that came too early
   EXPECT_TRUE(has(told_[0], "mm away from its home pose")) << told_[0];
   EXPECT_EQ(zeros_, messages_);
-  EXPECT_EQ(messages_, 1 + 70 * 20);  // one per millisecond, so that no watchdog and no pause comes
+  EXPECT_EQ(messages_,
+            1 + 70 * 20);  // one per millisecond, so that no watchdog expires and no pause occurs
   EXPECT_EQ(device_->stage(), driver::DeviceStage::kIdle);
-  // The run that follows begins with its first tick.
+  // The run that follows starts with its first tick.
   ASSERT_TRUE(device_->activate());
   EXPECT_EQ(device_->read(clock_.now_ns(), clock_.now_ns()).tick, 0u);
 }
@@ -170,9 +171,10 @@ TEST_F(WaitForStartPose, RestartMeanwhileNeedsHomePoseEvenIfHomed) {
   counts_ = {12000, 0, 0, 0, 0, 0};  // outside of the workspace
   open();
   user_ = [this](int look) {
-    silent_ = look >= 10 && look < 13;                // 60 ms
-    if (look == 12) counts_ = {2000, 0, 0, 0, 0, 0};  // it counts from elsewhere, inside
-    if (look == 40) counts_ = {50, 0, 0, 0, 0, 0};    // at home
+    silent_ = look >= 10 && look < 13;  // 60 ms
+    if (look == 12)
+      counts_ = {2000, 0, 0, 0, 0, 0};  // its counters are wrong; the reported tip is inside
+    if (look == 40) counts_ = {50, 0, 0, 0, 0, 0};  // at home
     return look == 30 || look == 50 ? session::EnterKey::kPressed : session::EnterKey::kNothing;
   };
   EXPECT_TRUE(*wait(false));

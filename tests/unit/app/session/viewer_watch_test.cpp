@@ -16,7 +16,7 @@
 namespace thimble::session {
 namespace {
 
-/// A run with two knobs, whose viewers look on in this process.
+/// Run with two knobs and viewers in this process.
 class ViewerWatchTest : public ::testing::Test {
  protected:
   ViewerWatchTest() {
@@ -38,7 +38,7 @@ class ViewerWatchTest : public ::testing::Test {
     return SharedReader::over(run_->memory().again().value()).value();
   }
 
-  /// Looks `times` and returns what was said.
+  /// Checks `times` times and returns the logged text.
   std::string step(int times = 1) {
     said_.str("");
     for (int i = 0; i < times; ++i) {
@@ -65,8 +65,8 @@ TEST_F(ViewerWatchTest, TellsWhoLooksOnAndWhoHasLeft) {
 }
 
 TEST_F(ViewerWatchTest, NoticesThatAViewerDied) {
-  int ready[2];  // the child writes once it looks on
-  int leave[2];  // the parent closes once it has seen the child
+  int ready[2];  // the child writes once it is attached
+  int leave[2];  // the parent closes once it has detected the child
   ASSERT_EQ(pipe(ready), 0);
   ASSERT_EQ(pipe(leave), 0);
   const pid_t child = fork();
@@ -109,7 +109,7 @@ TEST_F(ViewerWatchTest, TellsOfAKnobOnceItStandsStill) {
   EXPECT_EQ(step(20), "");
   viewer->turn_knob(0, 300);
   step();
-  viewer->turn_knob(0, 590);  // back where it was: nothing was set
+  viewer->turn_knob(0, 590);  // back at its value: nothing was set
   EXPECT_EQ(step(20), "");
   viewer->turn_knob(1, 0.5);
   EXPECT_EQ(step(20), "info tick 5, 0.005 s: A viewer set a: damping from 1 to 0.5 N s/m.\n");

@@ -1,4 +1,4 @@
-// What pages of a run that goes on are told, without a network.
+// Updates for the pages of a live run, without a network.
 #include "web/live_feed.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ class LiveFeedTest : public ::testing::Test {
   void run_ticks(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) run_->store_tick(live_tick(next_++));
   }
-  /// Reads all messages that there are for a page.
+  /// Reads all available messages for a page.
   std::string all(LiveFeed::Place& place) const {
     std::string bytes;
     while (feed_->has_message(place)) bytes += feed_->message(place);
@@ -95,7 +95,7 @@ TEST_F(LiveFeedTest, SlowPageLearnsHowManyTicksItMissed) {
     run_ticks(1000);
     feed_->step();
   }
-  // What is kept is bounded, however long the page stays away.
+  // Stored updates are bounded, however long the page is disconnected.
   EXPECT_LE(feed_->end() - feed_->oldest(), 61U);
   EXPECT_EQ(feed_->lost(), 0U);
   const std::string rest = all(slow);
@@ -125,7 +125,7 @@ TEST_F(LiveFeedTest, SaysHowManyTicksCameTooFastForAnybody) {
   LiveFeed::Place place;
   run_ticks(1);
   feed_->step();
-  run_ticks(5000);  // the ring has 2000
+  run_ticks(5000);  // the ring has 2000 entries
   feed_->step();
   EXPECT_EQ(feed_->lost(), 3000U);
   const auto updates = updates_of(all(place));

@@ -1,4 +1,4 @@
-// The server of a page that is live, with programs in this process in place of browsers.
+// The server of a live page, with clients in this process instead of browsers.
 #include "web/web_server.h"
 
 #include <arpa/inet.h>
@@ -35,7 +35,7 @@ namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-/// What a program names of itself; empty: what the page itself would.
+/// Headers of a client; empty: those of the page itself.
 struct Asking {
   std::string target;
   std::string host{};
@@ -79,7 +79,7 @@ class WebServerTest : public ::testing::Test {
     socket.connect({asio::ip::address_v4::loopback(), port_});
     return socket;
   }
-  /// Asks for a page; returns status and body.
+  /// Requests a page; returns status and body.
   std::pair<unsigned, std::string> get(const Asking& asking, bool upgrade = false) {
     tcp::socket socket = connect();
     http::request<http::empty_body> request(http::verb::get, asking.target, 11);
@@ -99,7 +99,7 @@ class WebServerTest : public ::testing::Test {
     return {parser.get().result_int(), parser.get().body()};
   }
 
-  /// Asks something of the run, as a page does; returns the status.
+  /// Sends a command to the run, as a page does; returns the status.
   unsigned post(const std::string& words, const Asking& asking, const std::string& token,
                 const std::string& run = {}) {
     tcp::socket socket = connect();
@@ -118,7 +118,7 @@ class WebServerTest : public ::testing::Test {
   }
 
   using Page = websocket::stream<tcp::socket>;
-  /// Opens a page; returns the status of the answer, 101 if it is open.
+  /// Opens a page; returns the status of the response, 101 if it is open.
   unsigned open(Page& page) {
     page.next_layer() = connect();
     page.read_message_max(0);
@@ -130,7 +130,7 @@ class WebServerTest : public ::testing::Test {
     page.handshake(response, here(), "/live" + token_, failed);
     return failed ? 0 : response.result_int();
   }
-  /// Reads until so many ticks came, or the page is closed; returns them.
+  /// Reads until the given number of ticks arrived, or the page is closed; returns them.
   std::vector<std::uint32_t> read_ticks(Page& page, std::size_t count) {
     std::vector<std::uint32_t> ticks;
     while (ticks.size() < count) {
@@ -303,7 +303,7 @@ TEST_F(WebServerTest, GarbageEndsOnlyItsConnection) {
   ASSERT_EQ(open(rude), 101U);
   error_code failed;
   long_winded.write(asio::buffer(std::string(100 * WebServer::kSaidMost, 'x')), failed);
-  // A frame that says it has 2^62 bytes.
+  // A frame with a stated length of 2^62 bytes.
   const std::string huge("\x82\xff\x40\0\0\0\0\0\0\0\1\2\3\4", 14);
   asio::write(rude.next_layer(), asio::buffer(huge), failed);
   good.write(asio::buffer(std::string("something short")), failed);
@@ -336,7 +336,7 @@ TEST_F(WebServerTest, SlowClientDoesNotStallOthers) {
   EXPECT_EQ(to_second, to_first);
   for (std::size_t i = 0; i < to_first.size(); ++i) ASSERT_EQ(to_first[i], i);
   EXPECT_EQ(lost_, 0U);
-  // What it has not read it is told of, once it does.
+  // Once it reads again, it gets the number of lost ticks.
   run_ticks(1);
   std::size_t came = 0;
   while (came + lost_ < 100'001) {
@@ -382,13 +382,13 @@ TEST_F(WebServerTest, SlowPagesAreClosedWithTheCodeOfAnotherRun) {
   constexpr std::uint32_t kNextRun = 5'000'000;
   Page page(io_);
   ASSERT_EQ(open(page), 101U);
-  // More than the sockets hold, so that the server is still sending.
+  // More data than the sockets buffer, so that the server is still sending.
   for (int part = 0; part < 20; ++part) {
     run_ticks(10'000);
     std::this_thread::sleep_for(2 * WebServer::kStep);
   }
   begin_run();
-  std::this_thread::sleep_for(std::chrono::milliseconds(600));  // it looks four times a second
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));  // it checks four times a second
   next_ = kNextRun;
   run_ticks(10);
   for (const std::uint32_t tick : read_ticks(page, 10'000'000)) ASSERT_LT(tick, kNextRun);
@@ -399,7 +399,7 @@ TEST_F(WebServerTest, TheFirstUpdateNamesTheRun) {
   std::vector<std::string> runs;
   for (int run = 0; run < 2; ++run) {
     if (run > 0) begin_run();
-    // It looks for another run four times a second.
+    // The server checks for another run four times a second.
     std::this_thread::sleep_for(std::chrono::milliseconds(600));
     run_ticks(1);
     Page page(io_);

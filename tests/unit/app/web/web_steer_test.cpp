@@ -1,4 +1,4 @@
-// What a page asks of a run, without a network.
+// Commands of a page to a run, without a network.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -13,7 +13,7 @@
 namespace thimble::web {
 namespace {
 
-/// A run that pages may ask for anything, unless `scene` says otherwise.
+/// Run that accepts all commands of pages, unless `scene` prevents it.
 struct Steered {
   explicit Steered(session::SharedScene scene = steered_scene())
       : run(session::SharedRun::create("", scene, 100).value()),
@@ -26,7 +26,7 @@ struct Steered {
     scene.knobs.push_back({"clay: stiffness", "N/m", 10, 1000, 300});
     return scene;
   }
-  /// Returns why a request is refused; empty: it is not.
+  /// Returns the reason why a request is refused; empty if it is accepted.
   std::string ask(const std::string& words) const {
     const auto asked = steer_run(*reader, words);
     return asked ? std::string() : asked.error().message;
