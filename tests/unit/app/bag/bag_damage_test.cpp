@@ -37,7 +37,7 @@ bool read_damaged(const fs::path& file, const std::vector<char>& bytes) {
   return true;
 }
 
-TEST(BagDamage, NoByteOfABagMakesItDoWorseThanASentence) {
+TEST(BagDamage, AnyDamagedByteCausesAnErrorAtMost) {
   const fs::path folder = support::scratch_folder() / "thimble_bag_damage";
   fs::create_directories(folder);
   const fs::path file = folder / "small.db3";

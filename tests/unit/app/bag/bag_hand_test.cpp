@@ -18,7 +18,7 @@ Eigen::Vector3d sway(double time) {
   return {0.01 * std::sin(4 * M_PI * time), 0.02 * time, 0.005 * std::cos(4 * M_PI * time)};
 }
 
-TEST(BagHand, GoesWhereADenseBagWentToAHundredthOfAMillimetre) {
+TEST(BagHand, FollowsADenseBagWithin10Micrometres) {
   const fs::path bag = support::scratch_folder() / "thimble_bag_hand";
   fs::remove_all(bag);
   bag::BagTrack poses;
@@ -47,7 +47,7 @@ TEST(BagHand, GoesWhereADenseBagWentToAHundredthOfAMillimetre) {
   fs::remove_all(bag);
 }
 
-TEST(BagHand, RefusesPositionsThatAreNoMetres) {
+TEST(BagHand, RejectsPositionsThatAreNotInMetres) {
   const fs::path bag = support::scratch_folder() / "thimble_bag_hand_far";
   fs::remove_all(bag);
   bag::BagTrack poses;

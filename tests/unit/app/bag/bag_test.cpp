@@ -59,7 +59,7 @@ class Bag : public ::testing::Test {
   fs::path folder_;
 };
 
-TEST_F(Bag, GivesPositionsByTheStampsOfTheirHeaders) {
+TEST_F(Bag, UsesTheStampsOfHeaders) {
   {
     test::BagMaker maker(file());
     maker.topic(7, "/tf", "tf2_msgs/msg/TFMessage");
@@ -87,7 +87,7 @@ TEST_F(Bag, GivesPositionsByTheStampsOfTheirHeaders) {
   EXPECT_EQ(received->samples.size(), 3U);
 }
 
-TEST_F(Bag, GoesByTheRecordersTimesWhereNoMessageIsStamped) {
+TEST_F(Bag, UsesTheRecordersTimesWithoutStamps) {
   {
     test::BagMaker maker(file());
     maker.topic(1, "/pose", kPose);
@@ -114,7 +114,7 @@ TEST_F(Bag, JoinsTheFilesOfASplitRecording) {
   EXPECT_DOUBLE_EQ(read->samples[1].time, 1);
 }
 
-TEST_F(Bag, ReadsNumbersInBothOrdersOfBytes) {
+TEST_F(Bag, ReadsBothByteOrders) {
   std::vector<unsigned char> bytes{0, 0, 0, 0};
   const auto put = [&bytes](auto value) {
     while ((bytes.size() - 4) % sizeof value != 0) bytes.push_back(0);
@@ -138,7 +138,7 @@ TEST_F(Bag, ReadsNumbersInBothOrdersOfBytes) {
 }
 
 #ifdef THIMBLE_FAST_CDR
-TEST_F(Bag, WritesTheBytesThatAnotherMakersLibraryWrites) {
+TEST_F(Bag, WritesTheSameBytesAsFastCdr) {
   for (const std::string frame : {"world", "w", "", "base"}) {
     for (const BagKind kind : {BagKind::kPositions, BagKind::kForces}) {
       std::vector<char> room(512);
@@ -166,7 +166,7 @@ TEST_F(Bag, WritesTheBytesThatAnotherMakersLibraryWrites) {
 }
 #endif
 
-TEST_F(Bag, SaysWhatIsThereWhereATopicIsNot) {
+TEST_F(Bag, ListsTopicsIfOneIsMissing) {
   {
     test::BagMaker maker(file());
     maker.topic(1, "/arm/pose", kPose);
@@ -182,7 +182,7 @@ TEST_F(Bag, SaysWhatIsThereWhereATopicIsNot) {
   EXPECT_TRUE(read_bag(file(), BagKind::kPositions, "/arm/pose"));
 }
 
-TEST_F(Bag, RefusesWhatIsNoBag) {
+TEST_F(Bag, RejectsFilesThatAreNotBags) {
   expect_refused({"no such bag"});
   std::ofstream(file()) << "time x y z\n0 0 0 0\n";
   expect_refused({"is damaged, or not a ROS bag"});
@@ -200,7 +200,7 @@ TEST_F(Bag, RefusesWhatIsNoBag) {
   }
 }
 
-TEST_F(Bag, RefusesMessagesThatCannotBeMeant) {
+TEST_F(Bag, RejectsInvalidMessages) {
   struct Case {
     std::string part;
     std::vector<unsigned char> second;
@@ -231,7 +231,7 @@ TEST_F(Bag, RefusesMessagesThatCannotBeMeant) {
   expect_refused({"serialized as \"json\""});
 }
 
-TEST_F(Bag, WritesWhatItReads) {
+TEST_F(Bag, ReadsWhatItWrites) {
   BagTrack poses{.name = "/pose", .kind = BagKind::kPositions, .frame = "world", .messages = {}};
   BagTrack forces{.name = "/wrench", .kind = BagKind::kForces, .frame = "world", .messages = {}};
   for (int i = 0; i < 300; ++i) {
@@ -258,7 +258,7 @@ TEST_F(Bag, WritesWhatItReads) {
   EXPECT_FALSE(write_bag("/proc/none/bag", {poses}));
 }
 
-TEST_F(Bag, TurnsTheAxesOfTheOmnisDrivers) {
+TEST_F(Bag, RotatesTheAxesOfTheOmnisDrivers) {
   const Eigen::Vector3d right_away_up(1, 2, 3);
   EXPECT_EQ(in_world(BagAxes::kOmni, right_away_up), Eigen::Vector3d(-2, 1, 3));
   EXPECT_EQ(in_world(BagAxes::kPlain, right_away_up), right_away_up);

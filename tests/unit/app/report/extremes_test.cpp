@@ -30,7 +30,7 @@ std::size_t first_least(const std::vector<std::array<double, kColumns>>& rows, s
   return rows.size();
 }
 
-TEST(Extremes, AreTheFirstRowsOfLeastAndMost) {
+TEST(Extremes, AreTheFirstRowsOfMinimumAndMaximum) {
   support::Random random(1);
   for (int round = 0; round < 200; ++round) {
     std::vector<std::array<double, 3>> rows(1 + random.bits() % 40);
@@ -48,7 +48,7 @@ TEST(Extremes, AreTheFirstRowsOfLeastAndMost) {
   }
 }
 
-TEST(Extremes, PassOverWhatIsNoNumber) {
+TEST(Extremes, IgnoreNaN) {
   Extremes<1> extremes;
   const std::array<double, 6> values{kNan, 2, kNan, 1, 3, kNan};
   for (std::size_t i = 0; i < values.size(); ++i) extremes.take({values[i]}, i);

@@ -85,7 +85,7 @@ TEST(PageBlock, WritesBase64AsTheStandardDoes) {
   EXPECT_EQ(of("foobar"), "Zm9vYmFy");
 }
 
-TEST(PageBlock, PutsEveryArrayWhereABrowserCanLookAtItInPlace) {
+TEST(PageBlock, AlignsEveryArrayForABrowser) {
   PageBlock block;
   block.add("odd", std::vector<std::uint8_t>{1, 2, 3});
   block.add("wide", std::vector<double>{0.1, -1e300});
@@ -108,7 +108,7 @@ TEST(PageRows, KeepEveryTickThatFits) {
   EXPECT_TRUE(rows_kept({}, 1000).empty());
 }
 
-TEST(PageRows, KeepLeastAndMostOfALongRun) {
+TEST(PageRows, KeepMinimumAndMaximumOfALongRun) {
   constexpr std::size_t kMost = 2000;
   auto ticks = lively_run(100'000);
   // Single ticks that regular sampling would miss.
@@ -129,7 +129,7 @@ TEST(PageRows, KeepLeastAndMostOfALongRun) {
   }
 }
 
-TEST(PageRows, KeepLeastAndMostInEveryStretch) {
+TEST(PageRows, KeepMinimumAndMaximumInEveryStretch) {
   // A plot of a few hundred points must show the whole outline of noise.
   constexpr std::size_t kCount = 50'000, kMost = 5500;
   auto ticks = lively_run(kCount);
@@ -238,7 +238,7 @@ TEST(OutlineTrace, KeepsPeaksAndPeriodsOfMillionsOfTicks) {
   EXPECT_EQ(*std::max_element(trace.periods_ns().begin(), trace.periods_ns().end()), 1'300'000);
 }
 
-TEST(PageRows, AreTheTicksAsTheyWere) {
+TEST(PageRows, AreTheRecordedTicks) {
   const auto ticks = lively_run(40'000);
   const auto kept = rows_kept(ticks, 3000);
   PageBlock block;
@@ -296,7 +296,7 @@ TEST(LightMesh, HasFewTrianglesAndStaysOnTheSurface) {
   EXPECT_EQ(light_mesh(mesh, mesh.triangles.size()).triangles, mesh.triangles);
 }
 
-TEST(Page, OfAMinuteAtAKilohertzIsBelowTenMegabytes) {
+TEST(Page, MinuteAtOneKilohertzIsBelowTenMegabytes) {
   const auto ticks = lively_run(60'001);
   const auto mesh = wavy_plate(400);  // 320,000 triangles
   PageTouch touch;
@@ -320,7 +320,7 @@ TEST(Page, OfAMinuteAtAKilohertzIsBelowTenMegabytes) {
   EXPECT_LT(base64(block.bytes()).size() + kLibraries, 10'000'000U);
 }
 
-TEST(PageMarks, TellOfFaultsAndOfTheGateInARecording) {
+TEST(PageMarks, ShowFaultsAndTheGateInARecording) {
   auto ticks = lively_run(3000);
   for (std::size_t i = 500; i < 520; ++i) ticks[i].f_sent_W = {0, 0, 0.1};
   for (std::size_t i = 2500; i < 3000; ++i) {
@@ -348,7 +348,7 @@ class Wanderer final : public render::ObjectTouch {
   double at = 0;
 };
 
-TEST(BodyTrace, KeepsALongRunInTheRoomOfAShortOneWithoutTheHeap) {
+TEST(BodyTrace, LongRunFitsWithoutAllocation) {
   std::vector<std::unique_ptr<render::ObjectTouch>> objects;
   auto one = std::make_unique<Wanderer>();
   Wanderer& wanderer = *one;
@@ -375,7 +375,7 @@ TEST(BodyTrace, KeepsALongRunInTheRoomOfAShortOneWithoutTheHeap) {
   }
 }
 
-TEST(DentTrace, KeepsEveryEndOfADentWhenRoomIsShort) {
+TEST(DentTrace, KeepsTheEndOfEveryDentWhenFull) {
   auto drawn = std::make_unique<session::DrawnDent>();
   session::DentTrace trace(*drawn);
   drawn->patch.object = 0;
@@ -425,7 +425,7 @@ void write_libraries(const std::filesystem::path& share) {
   write("doc/libjs-dygraphs/copyright", "dygraphs' licence");
 }
 
-TEST(Page, HoldsWhatItIsMadeOfAndNoNameOfASceneGetsOut) {
+TEST(Page, IsSelfContainedAndEscapesSceneNames) {
   const std::filesystem::path share = support::scratch_folder() / "share";
   const char* before = std::getenv("XDG_DATA_DIRS");
   const std::string kept = before != nullptr ? before : "";

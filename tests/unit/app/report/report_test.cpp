@@ -45,7 +45,7 @@ nlohmann::json read(const std::filesystem::path& file) {
   return nlohmann::json::parse(stream);
 }
 
-TEST(Report, HoldsTheValuesOfTheRun) {
+TEST(Report, ContainsTheValuesOfTheRun) {
   const std::filesystem::path folder = support::scratch_folder() / "thimble_report";
   ASSERT_TRUE(write_report(example(), folder).ok());
   const nlohmann::json report = read(folder / "report.json");
@@ -87,7 +87,7 @@ TEST(Report, WritesEachFigureWithItsGoal) {
   EXPECT_FALSE(named("touch_downs").contains("goal"));
 }
 
-TEST(Report, TellsTheRunInPlainWords) {
+TEST(Report, SummaryIsPlainText) {
   const std::string text = summary(example());
   EXPECT_NE(text.find(": 1 contact,"), std::string::npos) << text;
   EXPECT_NE(text.find("0.80 N maximum"), std::string::npos) << text;
@@ -97,7 +97,7 @@ TEST(Report, TellsTheRunInPlainWords) {
   EXPECT_LE(lines, 12);
 }
 
-TEST(Report, GivesTheMeanForceOfARunThatTouchedNoSurface) {
+TEST(Report, SummaryHasTheRmsForceWithoutContact) {
   session::RunFigures report;
   driver::TickRecord record;
   record.f_sent_W = {0, 0, 1.5};
@@ -145,7 +145,7 @@ TEST(Report, NamesTheFaultThatEndedIt) {
   EXPECT_NE(summary(report).find(driver::describe(driver::Fault::kOverSpeed)), std::string::npos);
 }
 
-TEST(Report, NamesTheLinkBesideTheFault) {
+TEST(Report, NamesTheLinkInAdditionToTheFault) {
   session::RunFigures report = example();
   report.end = driver::ServoEnd::kDone;
   EXPECT_EQ(summary(report).find("Link "), std::string::npos);
@@ -161,7 +161,7 @@ TEST(Report, NamesTheLinkBesideTheFault) {
   EXPECT_EQ(end["home_needed"], true);
 }
 
-TEST(Report, WarnsOfAnArmThatDidNotTakeTheLastZeroForce) {
+TEST(Report, WarnsIfZeroForceWasNotAccepted) {
   session::RunFigures report = example();
   report.end = driver::ServoEnd::kDone;
   EXPECT_NE(summary(report).find("the arm accepted zero force."), std::string::npos);
@@ -181,13 +181,13 @@ TEST(Report, WarnsOfAnArmThatDidNotTakeTheLastZeroForce) {
   EXPECT_EQ(read(folder / "report.json")["end"]["zero_assured"], false);
 }
 
-TEST(Report, SaysWhereItCannotWrite) {
+TEST(Report, ErrorNamesTheFolder) {
   const auto done = write_report(example(), "/proc/no_such_folder");
   ASSERT_FALSE(done.ok());
   EXPECT_NE(done.error().message.find("/proc/no_such_folder"), std::string::npos);
 }
 
-TEST(Report, SurvivesANameThatIsNotUtf8) {
+TEST(Report, NameMayBeInvalidUtf8) {
   session::RunFigures report = example();
   report.scene = "\xff\xfe";
   const std::filesystem::path folder = support::scratch_folder() / "thimble_report";
@@ -195,7 +195,7 @@ TEST(Report, SurvivesANameThatIsNotUtf8) {
   EXPECT_TRUE(read(folder / "report.json")["scene"].is_string());
 }
 
-TEST(Figure, IsWrittenWithANameThatIsNotUtf8) {
+TEST(Figure, NameMayBeInvalidUtf8) {
   const std::filesystem::path file = support::scratch_folder() / "figures_of_bytes.json";
   ASSERT_TRUE(write_figures({{"bytes_\xff", 1, "", ""}}, file).ok());
   EXPECT_EQ(read(file)[0]["name"], "bytes_\xEF\xBF\xBD");
@@ -215,7 +215,7 @@ TEST(Figure, MeetsItsGoalOrNot) {
   }
 }
 
-TEST(Figure, IsNamedWithItsPlaceInTheLastLineWhereItMissesItsGoal) {
+TEST(Figure, LastLineNamesUnmetGoalsWithTheirPlace) {
   const std::vector<Figure> figures{{"edge", 2, "%", "<= 1", "at B = 3 N s/m"},
                                     {"rate", 1, "%", "<= 3", "at 250 Hz"},
                                     {"cycles", 90, "%", ">= 95"},
@@ -228,7 +228,7 @@ TEST(Figure, IsNamedWithItsPlaceInTheLastLineWhereItMissesItsGoal) {
   EXPECT_NE(figure_table(figures).find("met  (at 250 Hz)"), std::string::npos);
 }
 
-TEST(Report, TellsOfMotorsThatGotHotAndOnlyOfThose) {
+TEST(Report, SummaryNamesHotMotorsOnly) {
   session::RunFigures report = example();
   report.heat_known = true;
   report.heat_most = 0.7;
@@ -239,7 +239,7 @@ TEST(Report, TellsOfMotorsThatGotHotAndOnlyOfThose) {
             std::string::npos);
 }
 
-TEST(Report, TellsWhatTheEnergyStageDidIfThereIsOne) {
+TEST(Report, SummaryNamesTheEnergyStageIfPresent) {
   session::RunFigures report = example();
   EXPECT_EQ(summary(report).find("by the gate"), std::string::npos);
   report.energy_stage = driver::EnergyStage::kPassivity;

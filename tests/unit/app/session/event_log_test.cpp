@@ -57,7 +57,7 @@ class EventLogTest : public ::testing::Test {
   std::atomic<bool> stop_{false};
 };
 
-TEST_F(EventLogTest, HoldsAFaultOfARunInVirtualTime) {
+TEST_F(EventLogTest, LogsAFaultInVirtualTime) {
   auto session = open();
   ASSERT_TRUE(session);
   // Far above the arm's limit, and NaN after half a second.
@@ -97,7 +97,7 @@ TEST_F(EventLogTest, HoldsAFaultOfARunInVirtualTime) {
   EXPECT_EQ(lines.back(), "info The run is over; the arm accepted zero force.");
 }
 
-TEST_F(EventLogTest, HoldsNothingOfARunThatIsNotToBeLogged) {
+TEST_F(EventLogTest, LogsNothingIfDisabled) {
   options_.log = false;
   auto session = open();
   ASSERT_TRUE(session);
@@ -123,7 +123,7 @@ TEST_F(EventLogTest, RealTimeEventsKeepTheirTime) {
   EXPECT_GT(passed, std::chrono::milliseconds(290));
 }
 
-TEST_F(EventLogTest, StandsInTheWayOfNoForce) {
+TEST_F(EventLogTest, DoesNotChangeForces) {
   std::vector<std::array<double, 3>> forces[2];
   for (const bool logged : {false, true}) {
     options_.log = logged;
@@ -138,7 +138,7 @@ TEST_F(EventLogTest, StandsInTheWayOfNoForce) {
   EXPECT_EQ(forces[0], forces[1]);
 }
 
-TEST_F(EventLogTest, TellsHowManyEventsItLacks) {
+TEST_F(EventLogTest, ReportsTheNumberOfLostEvents) {
   auto session = open();
   ASSERT_TRUE(session);
   {

@@ -20,7 +20,7 @@ constexpr bool kSignalsAreDelayed = true;
 constexpr bool kSignalsAreDelayed = false;
 #endif
 
-TEST(Interrupt, TakesSeveralSignalsWithinHalfASecondForOneRequest) {
+TEST(Interrupt, SignalsWithinHalfASecondAreOneRequest) {
   for (const std::int64_t since_ms : {0, 1, 10, 100, 499}) {
     EXPECT_FALSE(scene::ends_at_once(since_ms * kMs, false)) << since_ms;
     EXPECT_FALSE(scene::ends_at_once(since_ms * kMs, true)) << since_ms;
@@ -90,7 +90,7 @@ TEST(Interrupt, EveryCatchableSignalSetsTheFlag) {
   }
 }
 
-TEST(Interrupt, OutlivesTheTerminalUnderNohup) {
+TEST(Interrupt, SurvivesHangupUnderNohup) {
   EXPECT_EQ(outcome_of([] {
               std::signal(SIGHUP, SIG_IGN);
               const auto& flag = scene::catch_interrupts();
@@ -166,7 +166,7 @@ TEST(Interrupt, SigtermIsNotRepeatedWhileAnArmIsOpen) {
             7);
 }
 
-TEST(Interrupt, TakesCtrlZForARequestToLeaveWhereAnArmIsOpen) {
+TEST(Interrupt, CtrlZEndsTheProgramWhileAnArmIsOpen) {
   EXPECT_EQ(outcome_of([] {
               const auto& flag = scene::catch_interrupts();
               scene::leave_rather_than_stop();

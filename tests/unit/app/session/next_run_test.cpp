@@ -82,7 +82,7 @@ class NextRunTest : public ::testing::Test {
   SessionOptions options_;
 };
 
-TEST_F(NextRunTest, BeginsAnewWithTheBitsOfAFreshRun) {
+TEST_F(NextRunTest, RestartIsBitIdentical) {
   const std::uint64_t fresh = hash_alone();
   NextRun next = next_of();
   auto session = prepare();
@@ -99,14 +99,14 @@ TEST_F(NextRunTest, BeginsAnewWithTheBitsOfAFreshRun) {
   ASSERT_TRUE(session->share(options_));
   next.begin(*session);
   EXPECT_FALSE(next.ended());
-  EXPECT_EQ(view(*session)->speed_asked(), 4) << "the pace stays as it was chosen";
+  EXPECT_EQ(view(*session)->speed_asked(), 4) << "the chosen speed is kept";
   ASSERT_TRUE(session->open_arm());
   EXPECT_EQ(session->run(next.ended()), driver::ServoEnd::kDone);
   EXPECT_EQ(hash_of(*session), fresh);
   EXPECT_FALSE(next.take(driver::ServoEnd::kDone, false)) << "it does not loop";
 }
 
-TEST_F(NextRunTest, FeelsTheSameToTheBitAtAnyPaceAndTickByTick) {
+TEST_F(NextRunTest, AnySpeedAndSingleStepsAreBitIdentical) {
   const std::uint64_t fresh = hash_alone();
   NextRun next = next_of();
   const auto session = prepare();
@@ -123,7 +123,7 @@ TEST_F(NextRunTest, FeelsTheSameToTheBitAtAnyPaceAndTickByTick) {
   wait_for([&] { return viewer->state() == RunState::kPaused; });
   const std::uint64_t stood = viewer->counters().ticks;
   std::this_thread::sleep_for(std::chrono::milliseconds(30));
-  EXPECT_EQ(viewer->counters().ticks, stood) << "simulated time stands";
+  EXPECT_EQ(viewer->counters().ticks, stood) << "simulated time stops";
   for (const std::uint64_t ticks : {1u, 10u, 100u}) {
     const std::uint64_t before = viewer->counters().ticks;
     EXPECT_TRUE(viewer->ask_steps(ticks));
@@ -139,7 +139,7 @@ TEST_F(NextRunTest, FeelsTheSameToTheBitAtAnyPaceAndTickByTick) {
   live.requests.steps.fetch_add(1'000'000'000);
   std::this_thread::sleep_for(std::chrono::milliseconds(30));
   EXPECT_EQ(viewer->counters().ticks, before);
-  EXPECT_EQ(viewer->counters().missed, 0u) << "what stands misses nothing";
+  EXPECT_EQ(viewer->counters().missed, 0u) << "a stopped run misses no ticks";
   EXPECT_EQ(viewer->counters().paused, 0u);
   viewer->ask_pause(false);
   EXPECT_TRUE(viewer->ask_speed(2));
@@ -150,7 +150,7 @@ TEST_F(NextRunTest, FeelsTheSameToTheBitAtAnyPaceAndTickByTick) {
   EXPECT_EQ(hash_of(*session), fresh);
 }
 
-TEST_F(NextRunTest, TakesAFileThatChangedAndGoesOnWhereItIsWrong) {
+TEST_F(NextRunTest, ReloadsAChangedFileUnlessItIsInvalid) {
   NextRun next = next_of(true);
   const auto session = prepare();
   next.begin(*session);
@@ -162,7 +162,7 @@ TEST_F(NextRunTest, TakesAFileThatChangedAndGoesOnWhereItIsWrong) {
   EXPECT_FALSE(next.ended()) << "nothing has changed";
   write("stiff");
   look();
-  EXPECT_FALSE(next.ended()) << "the run goes on";
+  EXPECT_FALSE(next.ended()) << "the run continues";
   EXPECT_NE(viewer->notice().find("ball.yaml:15: stiffness: expected"), std::string::npos)
       << viewer->notice();
   write("400");
@@ -177,7 +177,7 @@ TEST_F(NextRunTest, TakesAFileThatChangedAndGoesOnWhereItIsWrong) {
   EXPECT_EQ(changed->scene().objects[0].stiffness, 300);
 }
 
-TEST_F(NextRunTest, RunsAnotherSceneOrTellsWhyNot) {
+TEST_F(NextRunTest, RunsAnotherSceneOrReportsTheError) {
   NextRun next = next_of();
   const auto session = prepare();
   next.begin(*session);
@@ -186,7 +186,7 @@ TEST_F(NextRunTest, RunsAnotherSceneOrTellsWhyNot) {
   next.step(false);
   EXPECT_FALSE(next.ended());
   EXPECT_NE(viewer->notice().find("/nowhere/none.yaml"), std::string::npos) << viewer->notice();
-  EXPECT_FALSE(viewer->ask_restart(std::string(5000, 'x'))) << "it cannot be told whole";
+  EXPECT_FALSE(viewer->ask_restart(std::string(5000, 'x'))) << "the path is too long";
   ASSERT_TRUE(viewer->ask_restart((kSource / "app/scenes/honey.yaml").string()));
   next.step(false);
   EXPECT_TRUE(next.ended());
@@ -218,7 +218,7 @@ TEST_F(NextRunTest, KeepsRequestsMadeDuringPreparation) {
   ASSERT_TRUE(viewer->ask_restart());
   next.step(false);
   EXPECT_TRUE(next.ended());
-  EXPECT_EQ(prepared, 2) << "beside the run, which goes on";
+  EXPECT_EQ(prepared, 2) << "prepared while the run continues";
   // The servo may continue for a while; requests to it would be lost now.
   EXPECT_FALSE(viewer->heard());
   const auto late = viewer->ask_restart();
@@ -237,7 +237,7 @@ TEST_F(NextRunTest, KeepsRequestsMadeDuringPreparation) {
   EXPECT_EQ(anew->notice(), "");
 }
 
-TEST_F(NextRunTest, TellsTheNextRunsViewersWhyTheirSceneIsNotShown) {
+TEST_F(NextRunTest, ReportsARejectedSceneToViewersOfTheNextRun) {
   std::unique_ptr<SharedReader> viewer;
   bool first = true;
   NextRun next(
@@ -255,20 +255,20 @@ TEST_F(NextRunTest, TellsTheNextRunsViewersWhyTheirSceneIsNotShown) {
   ASSERT_TRUE(viewer->ask_restart());
   next.step(false);
   const auto then = next.take(driver::ServoEnd::kStopped, false);
-  ASSERT_TRUE(then) << "what was asked before stands ready";
+  ASSERT_TRUE(then) << "the previous request is prepared";
   ASSERT_TRUE(then->share(options_));
   next.begin(*then);
   EXPECT_NE(view(*then)->notice().find("/nowhere/none.yaml"), std::string::npos);
 }
 
-TEST_F(NextRunTest, HearsWhatIsAskedBetweenTheLastTickAndTheEnd) {
+TEST_F(NextRunTest, HandlesRequestsAfterTheLastTick) {
   NextRun next = next_of();
   auto session = prepare();
   auto viewer = view(*session);
   next.begin(*session);
   ASSERT_TRUE(viewer->ask_restart());
   const auto again = next.take(driver::ServoEnd::kDone, false);
-  ASSERT_TRUE(again) << "asked after the last look beside the run";
+  ASSERT_TRUE(again) << "requested after the last check during the run";
   EXPECT_FALSE(viewer->ask_restart());
 
   session = prepare();
@@ -302,10 +302,10 @@ TEST_F(NextRunTest, PauseCarriesOverToTheNextRun) {
   ASSERT_TRUE(anew);
   ASSERT_TRUE(anew->share(options_, then->shared()));
   next.begin(*anew);
-  EXPECT_FALSE(view(*anew)->pause_asked()) << "who begins anew wants it to run";
+  EXPECT_FALSE(view(*anew)->pause_asked()) << "a restart ends the pause";
 }
 
-TEST_F(NextRunTest, KeepsThePaceThatIsAskedForBeforeItBegins) {
+TEST_F(NextRunTest, KeepsASpeedRequestedBeforeTheStart) {
   NextRun next = next_of(false, false, 4);
   const auto session = prepare();
   const auto viewer = view(*session);
@@ -316,13 +316,13 @@ TEST_F(NextRunTest, KeepsThePaceThatIsAskedForBeforeItBegins) {
   EXPECT_TRUE(viewer->loop_asked());
 }
 
-TEST_F(NextRunTest, LoopsUntilAFaultOrAPersonEndsIt) {
+TEST_F(NextRunTest, LoopsUntilAFaultOrAStop) {
   NextRun next = next_of(false, true);
   const auto session = prepare();
   const auto viewer = view(*session);
   next.begin(*session);
   EXPECT_TRUE(viewer->loop_asked());
-  EXPECT_FALSE(next.take(driver::ServoEnd::kDone, true)) << "somebody pressed Ctrl-C";
+  EXPECT_FALSE(next.take(driver::ServoEnd::kDone, true)) << "Ctrl-C was pressed";
   EXPECT_FALSE(next.take(driver::ServoEnd::kFault, false)) << "after a fault a person looks first";
   next.begin(*session);
   EXPECT_TRUE(next.take(driver::ServoEnd::kDone, false));
@@ -336,7 +336,7 @@ TEST_F(NextRunTest, LoopsUntilAFaultOrAPersonEndsIt) {
   EXPECT_TRUE(next.ended());
 }
 
-TEST_F(NextRunTest, DoesNothingOfItWithAPhysicalArm) {
+TEST_F(NextRunTest, NeverRestartsARealArm) {
   RealArmUse use;
   use.arm.kind = driver::ArmKind::kPolhem;
   use.arm.serial = "on_the_desk";
@@ -365,7 +365,7 @@ TEST_F(NextRunTest, DoesNothingOfItWithAPhysicalArm) {
   EXPECT_FALSE(next.take(driver::ServoEnd::kDone, false));
 }
 
-TEST(FileWatch, WaitsUntilAFileStandsStillAndIsSomethingElse) {
+TEST(FileWatch, ReportsAFileOnceItIsStableAndDifferent) {
   const auto file = support::scratch_folder() / "watched.yaml";
   const auto write = [&file](const char* text) { std::ofstream(file) << text; };
   write("one");
@@ -377,7 +377,7 @@ TEST(FileWatch, WaitsUntilAFileStandsStillAndIsSomethingElse) {
   EXPECT_FALSE(watch.step());
   EXPECT_FALSE(watch.step());
   EXPECT_TRUE(watch.step());
-  EXPECT_FALSE(watch.step()) << "told once";
+  EXPECT_FALSE(watch.step()) << "reported once";
   EXPECT_FALSE(watch.as_at_first());
   std::filesystem::remove(file);
   for (int i = 0; i < 5; ++i) EXPECT_FALSE(watch.step()) << "an editor puts it back";
@@ -388,7 +388,7 @@ TEST(FileWatch, WaitsUntilAFileStandsStillAndIsSomethingElse) {
   EXPECT_TRUE(watch.as_at_first());
 }
 
-TEST(SpeedClock, GoesByTheWorldTimesItsSpeedAndCatchesUpALittle) {
+TEST(SpeedClock, FollowsRealTimeTimesSpeedAndCatchesUpALittle) {
   constexpr double kMillisecond = 1e6;
   EXPECT_EQ(paced_due(100 * kMillisecond, 100 * kMillisecond, kMillisecond, 1), 101 * kMillisecond);
   EXPECT_EQ(paced_due(100 * kMillisecond, 100 * kMillisecond, kMillisecond, 4),
@@ -401,7 +401,7 @@ TEST(SpeedClock, GoesByTheWorldTimesItsSpeedAndCatchesUpALittle) {
       << "too late for that";
   SpeedClock clock;
   clock.sleep_until_ns(1000);
-  EXPECT_EQ(clock.now_ns(), 1000) << "never later than asked: no tick is missed";
+  EXPECT_EQ(clock.now_ns(), 1000) << "never later than requested: no tick is missed";
   clock.sleep_until_ns(500);
   EXPECT_EQ(clock.now_ns(), 1000);
 }

@@ -89,7 +89,7 @@ bool same(const TickRecord& a, const TickRecord& b) {
   return true;
 }
 
-TEST(RecordingColumns, HoldEveryByteOfATickButPadding) {
+TEST(RecordingColumns, ContainEveryByteOfATickExceptPadding) {
   std::size_t bytes = 0;
   for (const session::RecordingColumn& column : session::recording_columns())
     bytes += column.bytes();
@@ -99,7 +99,7 @@ TEST(RecordingColumns, HoldEveryByteOfATickButPadding) {
   EXPECT_EQ(sizeof(TickRecord) - bytes, 9U) << "a field of TickRecord is in no column";
 }
 
-TEST(Recording, ReadsBackToTheBit) {
+TEST(Recording, ReadsBackBitIdentically) {
   const auto path = scratch("whole.h5");
   auto recorder = session::Recorder::open(path, kInfo, 3000);
   ASSERT_TRUE(recorder) << recorder.error().message;
@@ -122,7 +122,7 @@ TEST(Recording, ReadsBackToTheBit) {
   EXPECT_EQ(read->info.seed, kInfo.seed);
 }
 
-TEST(Recording, OfAnOlderProgramHasNoHeatAndNoOrientation) {
+TEST(Recording, OlderRecordingHasNoHeatAndNoOrientation) {
   const auto path = scratch("older.h5");
   auto recorder = session::Recorder::open(path, kInfo, 10);
   ASSERT_TRUE(recorder) << recorder.error().message;
@@ -217,7 +217,7 @@ TEST(Recording, KilledRunLosesLessThan100ms) {
   }
 }
 
-TEST(Recording, OnAFullDiskEndsWithItsReasonAndKeepsWhatItHas) {
+TEST(Recording, FullDiskEndsRecordingAndKeepsTicks) {
   const auto path = scratch("full.h5");
   const pid_t child = fork();
   if (child == 0) {
@@ -251,7 +251,7 @@ TEST(Recording, OnAFullDiskEndsWithItsReasonAndKeepsWhatItHas) {
   EXPECT_FALSE(std::filesystem::exists(scratch("full.thimble-part.h5")));
 }
 
-TEST(Recording, BeyondItsLongestTimeIsNotComplete) {
+TEST(Recording, BeyondItsMaximumDurationIsIncomplete) {
   const auto path = scratch("longest.h5");
   auto recorder = session::Recorder::open(path, kInfo, 100);
   ASSERT_TRUE(recorder);
@@ -325,7 +325,7 @@ TEST(Recording, IsReadWhileAnotherThreadMakesOne) {
 }
 
 // A file system without sparse files (FAT) has no space for a whole day at once.
-TEST(Recording, OfAWholeDayBeginsSmall) {
+TEST(Recording, WholeDayStartsWithASmallFile) {
   const auto path = scratch("day.h5");
   const auto recorder = session::Recorder::open(path, kInfo, 86'400'000);
   ASSERT_TRUE(recorder) << recorder.error().message;
@@ -417,7 +417,7 @@ TEST(Recording, Hdf5FileOfAnotherProgramIsKept) {
   EXPECT_EQ(std::filesystem::file_size(path), size);
 }
 
-TEST(Recording, CountsTicksThatFindNoRoomAndNeverWaits) {
+TEST(Recording, CountsDroppedTicksAndNeverWaits) {
   auto recorder = session::Recorder::open(scratch("slow.h5"), kInfo, 100'000);
   ASSERT_TRUE(recorder);
   for (std::uint64_t i = 0; i < session::Recorder::kRingTicks + 10; ++i)
@@ -429,7 +429,7 @@ TEST(Recording, CountsTicksThatFindNoRoomAndNeverWaits) {
   EXPECT_FALSE(session::read_recording(scratch("slow.h5"))->complete);
 }
 
-TEST(Recording, ThatCannotBeWrittenSaysWhere) {
+TEST(Recording, UnwritableRecordingReportsThePath) {
   const auto refused = session::Recorder::open("/proc/no/such/place.h5", kInfo, 10);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("/proc/no/such/place.h5"), std::string::npos);
@@ -461,7 +461,7 @@ TEST(Recording, IsReplacedOnlyIfThatIsAllowed) {
   EXPECT_TRUE(session::Recorder::open(again, kInfo, 10, true));
 }
 
-TEST(Recording, TellsNamesThatCannotMoveATerminal) {
+TEST(Recording, NamesContainNoControlCharacters) {
   const auto path = scratch("escapes.h5");
   session::RecordingInfo info = kInfo;
   info.scene = "red \x1b[31m bell \a wide \302\23331m \303\244";
@@ -476,7 +476,7 @@ TEST(Recording, TellsNamesThatCannotMoveATerminal) {
   EXPECT_EQ(read->info.scene_text, info.scene_text);
 }
 
-TEST(Recording, SaysWhatAFileIsNot) {
+TEST(Recording, RejectsFilesOfOtherKinds) {
   EXPECT_NE(session::read_recording(scratch("none.h5")).error().message.find("no such file"),
             std::string::npos);
   std::ofstream(scratch("text.h5")) << "not a recording";
@@ -534,7 +534,7 @@ TEST(Recording, CutShortAnywhereIsReadOrRefused) {
   }
 }
 
-TEST(Csv, HoldsEveryNumberToTheBit) {
+TEST(Csv, NumbersAreBitIdentical) {
   session::Recording recording;
   recording.info = kInfo;
   TickRecord tick = tick_number(7);
@@ -566,7 +566,7 @@ TEST(Csv, HoldsEveryNumberToTheBit) {
   EXPECT_EQ(cells.front(), "7");
 }
 
-TEST(BlackBox, KeepsTheSecondsBeforeAFaultUntilTheyAreTaken) {
+TEST(BlackBox, KeepsTheSecondsBeforeAFaultUntilReleased) {
   session::BlackBox box(1000);
   TickRecord tick;
   const auto run = [&](int ticks, driver::Fault fault) {
@@ -597,7 +597,7 @@ TEST(BlackBox, KeepsTheSecondsBeforeAFaultUntilTheyAreTaken) {
   EXPECT_EQ(second.back().fault, driver::Fault::kNoReports);
 }
 
-TEST(Recording, AsksTheHeapForNothingPerTick) {
+TEST(Recording, DoesNotAllocatePerTick) {
   auto recorder = session::Recorder::open(scratch("quiet.h5"), kInfo, 1000);
   ASSERT_TRUE(recorder);
   session::BlackBox box(1000);

@@ -128,7 +128,7 @@ TEST_F(ReplayOptions, CarriedWeightRepeats) {
   expect_repeats(recording);
 }
 
-TEST_F(ReplayOptions, LawOfAProgramIsNoRepeatableRun) {
+TEST_F(ReplayOptions, LawOfAProgramIsNotRepeatable) {
   const auto path = support::scratch_folder() / "law.h5";
   auto opened = session::Session::open("box", {.duration = 0.1, .record = path});
   ASSERT_TRUE(opened);
@@ -160,7 +160,7 @@ TEST_F(ReplayOptions, UnknownQualityIsRefused) {
   EXPECT_FALSE(session::Session::open("box", {.quality = "best"}));
 }
 
-TEST(RunChoices, ReadBackWithAllBits) {
+TEST(RunChoices, ReadBackBitIdentically) {
   const session::RunChoices choices{
       .quality = "auto", .budget = 0.1 + 0.2, .rate_factor = 1.0 / 3, .adjusted = true};
   const auto read = session::run_choices(text_of(choices));
@@ -171,7 +171,7 @@ TEST(RunChoices, ReadBackWithAllBits) {
   EXPECT_TRUE(read->adjusted);
 }
 
-TEST(RunChoices, RefuseWhatThisProgramDoesNotKnow) {
+TEST(RunChoices, RejectUnknownOptions) {
   for (const char* text : {"gravity: 2\n", "quality: best\n", "budget: -1\n", "budget: nan\n",
                            "rate_factor: 1x\n", "quality\n", "adjusted: no\n"}) {
     EXPECT_FALSE(session::run_choices(text)) << text;

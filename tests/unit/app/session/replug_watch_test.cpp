@@ -135,7 +135,7 @@ class ReplugWatchTest : public ::testing::Test {
   std::vector<std::string> told_;
 };
 
-TEST_F(ReplugWatchTest, AsksForTheHomePoseAndGivesForceOnlyThere) {
+TEST_F(ReplugWatchTest, EnablesForcesOnlyAtTheHomePose) {
   pass(5);
   EXPECT_GT(force(), 0.4);
   first_.lost = true;
@@ -155,7 +155,7 @@ TEST_F(ReplugWatchTest, AsksForTheHomePoseAndGivesForceOnlyThere) {
   EXPECT_EQ(last_.fault, Fault::kTransportLost);
   second_.counts = {50, 0, 0, 0, 0, 0};
   pass(3);
-  EXPECT_EQ(force(), 0) << "nobody pressed Enter";
+  EXPECT_EQ(force(), 0) << "Enter was not pressed";
   enter_ = true;
   pass(6);
   EXPECT_GT(force(), 0.4);
@@ -191,7 +191,7 @@ TEST_F(ReplugWatchTest, ChecksTheWorkspaceAfterAnyFault) {
   EXPECT_GT(force(), 0.4);
 }
 
-TEST_F(ReplugWatchTest, FindsAnArmThatIsPulledAfterAnotherFault) {
+TEST_F(ReplugWatchTest, FindsAnArmDisconnectedAfterAnotherFault) {
   pass(5);
   device_->trip(Fault::kOverSpeed);
   pass(2);
@@ -208,7 +208,7 @@ TEST_F(ReplugWatchTest, FindsAnArmThatIsPulledAfterAnotherFault) {
   EXPECT_EQ(last_.fault, Fault::kOverSpeed);
   EXPECT_EQ(last_.link, driver::LinkState::kConnected);
   EXPECT_TRUE(told("Move it to its home pose and press Enter"));
-  EXPECT_EQ(force(), 0) << "nobody pressed Enter";
+  EXPECT_EQ(force(), 0) << "Enter was not pressed";
   enter_ = true;
   pass(6);
   EXPECT_GT(force(), 0.4);
@@ -232,7 +232,7 @@ TEST_F(ReplugWatchTest, FindsAnArmWhoseLossTheKernelReportsLate) {
   EXPECT_GT(force(), 0.4);
 }
 
-TEST_F(ReplugWatchTest, AsksForTheHomePoseAfterARestartOfTheBoard) {
+TEST_F(ReplugWatchTest, BoardRestartRequiresTheHomePose) {
   first_.counts = {1500, 800, 0, 0, 0, 0};
   pass(5);
   EXPECT_GT(force(), 0.4);
@@ -255,7 +255,7 @@ TEST_F(ReplugWatchTest, AsksForTheHomePoseAfterARestartOfTheBoard) {
   EXPECT_GT(force(), 0.4);
 }
 
-TEST_F(ReplugWatchTest, FindsAnArmThatIsPulledAgainBeforeItGotAForce) {
+TEST_F(ReplugWatchTest, FindsAnArmDisconnectedTwice) {
   pass(5);
   first_.lost = true;
   plugged_ = true;

@@ -98,12 +98,13 @@ TEST_F(RunLoopTest, ObserversRunInOrderAfterTheForce) {
   for (std::size_t i = 0; i < told_.size(); ++i) {
     EXPECT_EQ(told_[i].tick, i / 2);
     EXPECT_EQ(told_[i].observer, i % 2 == 0 ? 1 : 2);
-    EXPECT_EQ(told_[i].messages - before, static_cast<int>(i / 2 + 1)) << "sent before it is told";
+    EXPECT_EQ(told_[i].messages - before, static_cast<int>(i / 2 + 1))
+        << "sent before the observers are called";
     EXPECT_NEAR(told_[i].force, static_cast<double>(i / 2) / 60, 1e-12) << "the gate's soft start";
   }
 }
 
-TEST_F(RunLoopTest, TellsNobodyOnceItIsOver) {
+TEST_F(RunLoopTest, DoesNotCallObserversAfterItsEnd) {
   auto law = [](const driver::DeviceState&) noexcept { return driver::ForceCommand{}; };
   Witness witness(*this, 1);
   session::RunLoop loop;

@@ -16,7 +16,7 @@ namespace {
 
 using session::ViewerChoice;
 
-TEST(ChooseRunArm, LooksForNoBoardWhereTheSimulatedArmIsAskedFor) {
+TEST(ChooseRunArm, SimulatedArmNeedsNoBoardSearch) {
   int looks = 0;
   const auto find = [&] {
     ++looks;
@@ -86,7 +86,7 @@ TEST(ChooseRunArms, GivesEachArmOfASceneItsOwnBoard) {
   EXPECT_NE(refused({"left=auto"}).find("The arm \"left\": "), std::string::npos) << "which of two";
 }
 
-TEST(OpensViewer, WhereItIsAskedForOrAPersonWatchesInRealTime) {
+TEST(OpensViewer, OnRequestOrForARealTimeRunAtATerminal) {
   EXPECT_TRUE(session::opens_viewer(ViewerChoice::kAsked, false, true, false));
   EXPECT_FALSE(session::opens_viewer(ViewerChoice::kAsked, true, false, true)) << "no screen";
   EXPECT_TRUE(session::opens_viewer(ViewerChoice::kIfWatched, true, true, true));
@@ -95,7 +95,7 @@ TEST(OpensViewer, WhereItIsAskedForOrAPersonWatchesInRealTime) {
   EXPECT_FALSE(session::opens_viewer(ViewerChoice::kNever, true, true, true));
 }
 
-TEST(ProgressLine, TellsTimeTouchForceAndDepth) {
+TEST(ProgressLine, ShowsTimeContactForceAndDepth) {
   const auto run = support::scripted_run(1000, 100, 300);
   EXPECT_EQ(session::progress_line(run[200], 20),
             "   0.2 of 20.0 s   touching  force  0.80 N   depth  1.00 mm ");
@@ -103,7 +103,7 @@ TEST(ProgressLine, TellsTimeTouchForceAndDepth) {
             "   0.1 s   free      force  0.00 N   depth  0.00 mm ");
 }
 
-TEST(HeatWarning, IsGivenOnceWithTheFirstTickThatIsSoHot) {
+TEST(HeatWarning, IsGivenOnceAtTheFirstTickAboveTheLimit) {
   auto run = support::scripted_run(10, 0, 10);
   for (std::size_t i = 0; i < run.size(); ++i) run[i].heat = {0, 0.1 * static_cast<double>(i), 0};
   session::HeatWarning warning;
@@ -116,7 +116,7 @@ TEST(HeatWarning, IsGivenOnceWithTheFirstTickThatIsSoHot) {
   EXPECT_TRUE(warning.look(run.back()).empty());
 }
 
-TEST(ExitCode, TellsHowARunEnded) {
+TEST(ExitCode, DependsOnTheEndOfTheRun) {
   using driver::Fault;
   using driver::ServoEnd;
   EXPECT_EQ(cli::exit_code_of(ServoEnd::kDone, Fault::kNone, false), cli::kExitDone);

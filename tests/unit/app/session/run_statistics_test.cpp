@@ -44,7 +44,7 @@ TEST(Histogram, HoldsEachValueInABinNarrowerThanOnePercent) {
   }
 }
 
-TEST(Histogram, ClampsWhatIsOutOfItsRange) {
+TEST(Histogram, ClampsValuesOutOfRange) {
   session::Histogram histogram;
   histogram.add(-5);
   histogram.add(session::Histogram::kMax_ns + 1);
@@ -93,7 +93,7 @@ TEST(RunStatistics, CountsAContactFromTheFirstTickOn) {
   EXPECT_EQ(statistics.interruptions(), 0U);
 }
 
-TEST(RunStatistics, GivesEnergyByTheForceThatActedDuringEachStep) {
+TEST(RunStatistics, EnergyUsesTheForceThatActedInEachStep) {
   // f = (1, 2, 0) N in tick 0 acts while the tip moves by (3, 4, 5) mm: 11 mJ to the hand; the
   // force of tick 1 acts while it moves back by half: -(1.5 * 4) mJ.
   session::RunStatistics statistics;

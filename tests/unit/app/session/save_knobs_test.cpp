@@ -60,7 +60,7 @@ class SaveKnobs : public ::testing::Test {
   std::unique_ptr<SharedReader> reader_;
 };
 
-TEST_F(SaveKnobs, GoRoundBesideTheSceneWithItsComments) {
+TEST_F(SaveKnobs, SavesACopyWithTheSceneAndKeepsComments) {
   const fs::path file = own("rubber");
   const std::string before = scene::text_of(file);
   SharedReader& reader = view(file);
@@ -80,14 +80,14 @@ TEST_F(SaveKnobs, GoRoundBesideTheSceneWithItsComments) {
                                 std::pair("static_coefficient: 1 ", "static_coefficient: 0.5 ")}) {
     expected.replace(expected.find(was), std::string(was).size(), is);
   }
-  EXPECT_EQ(scene::text_of(saved->file), expected) << "all but three numbers is as it was";
+  EXPECT_EQ(scene::text_of(saved->file), expected) << "only three numbers differ";
   view(saved->file);
   EXPECT_EQ(knob("ball: stiffness"), 321.5);
   EXPECT_EQ(knob("ball: friction coefficient"), 0.4);
   EXPECT_EQ(knob("ball: damping"), 2);
 }
 
-TEST_F(SaveKnobs, ReplaceNoFileUnlessThatIsAskedFor) {
+TEST_F(SaveKnobs, ReplacesAFileOnlyOnRequest) {
   const fs::path file = own("honey");
   SharedReader& reader = view(file);
   ASSERT_TRUE(turn_knob(reader, "honey: damping=3"));
@@ -102,7 +102,7 @@ TEST_F(SaveKnobs, ReplaceNoFileUnlessThatIsAskedFor) {
   EXPECT_NE(scene::text_of(file).find("damping: 3 "), std::string::npos);
 }
 
-TEST_F(SaveKnobs, NeverWriteOverASceneThatCameWithThimble) {
+TEST_F(SaveKnobs, NeverOverwritesAShippedScene) {
   const fs::path shipped = kSources / "app/scenes/clay.yaml";
   const std::string before = scene::text_of(shipped);
   SharedReader& reader = view(shipped);
@@ -118,7 +118,7 @@ TEST_F(SaveKnobs, NeverWriteOverASceneThatCameWithThimble) {
   EXPECT_EQ(knob("ball: stiffness"), 500);
 }
 
-TEST_F(SaveKnobs, SayWhichKnobsNoKeyOfTheFileHas) {
+TEST_F(SaveKnobs, ReportsKnobsWithoutAKey) {
   SharedReader& reader = view(own("sandpaper"));
   ASSERT_TRUE(turn_knob(reader, "ribs: texture gain=0.5"));
   const auto none = save_knobs(reader);
@@ -136,7 +136,7 @@ TEST_F(SaveKnobs, SayWhichKnobsNoKeyOfTheFileHas) {
   EXPECT_EQ(knob("ribs: stiffness"), 700);
 }
 
-TEST(EditScene, FindsTheEffectThatIsMeantAndLeavesTheRest) {
+TEST(EditScene, ChangesOnlyTheNamedEffect) {
   const std::string text =
       "objects:\n"
       "  - {name: ü, stiffness: 400, effects: [{texture: a, height: 1}, {texture: b, height: 2}]}\n"
@@ -155,7 +155,7 @@ TEST(EditScene, FindsTheEffectThatIsMeantAndLeavesTheRest) {
             "  - name: b   # height: 2\n"
             "    stiffness: \"400\"\n");
   EXPECT_EQ(edited->absent, (std::vector<std::size_t>{2, 3}))
-      << "what is quoted is not touched, and told";
+      << "quoted values are unchanged and reported";
   EXPECT_FALSE(scene::put_numbers("a: [", {}));
 }
 

@@ -78,7 +78,7 @@ class SessionStart : public ::testing::Test {
   bool ready_ = false;
 };
 
-TEST_F(SessionStart, OpensTheArmAfterAllThatTakesTimeAndLeavesItIdle) {
+TEST_F(SessionStart, OpensTheArmLastAndLeavesItIdle) {
   auto prepared = session::Session::prepare(scene(), options_);
   ASSERT_TRUE(prepared) << prepared.error().message;
   session_ = std::move(prepared).value();
@@ -94,7 +94,7 @@ TEST_F(SessionStart, OpensTheArmAfterAllThatTakesTimeAndLeavesItIdle) {
   EXPECT_EQ(session_->device().stage(), driver::DeviceStage::kIdle);
 }
 
-TEST_F(SessionStart, WithNobodyToAskRefusesAnArmThatIsNotAtHome) {
+TEST_F(SessionStart, NonInteractiveStartRequiresTheHomePose) {
   counts_ = {2000, 0, 0, 0, 0, 0};
   const auto refused = session::Session::open(scene(), options_);
   ASSERT_FALSE(refused);
@@ -111,7 +111,7 @@ TEST_F(SessionStart, WithNobodyToAskRefusesAnArmThatIsNotAtHome) {
   EXPECT_EQ(forced_, 0);
 }
 
-TEST_F(SessionStart, FindsTheObjectsThatARealTipStartsIn) {
+TEST_F(SessionStart, ReportsObjectsInWhichARealTipStarts) {
   const std::filesystem::path file = support::scratch_folder() / "around_the_arm.yaml";
   std::ofstream(file) << "name: around\narm: vintage_phantom\nduration: 1\nobjects:\n"
                          "  - {name: ball, sphere: {radius: 1}, stiffness: 500}\n"
@@ -153,11 +153,11 @@ TEST_F(SessionStart, AsksBeforeARealArmGetsForces) {
   terminal.there = false;
   EXPECT_FALSE(session::agree_to_forces(**prepared, false, terminal, stop));
   EXPECT_NE(told.back().find("--yes"), std::string::npos);
-  EXPECT_EQ(looks, 0) << "nobody is asked";
+  EXPECT_EQ(looks, 0) << "no question is printed";
   EXPECT_EQ(opened_, 0);
 }
 
-TEST_F(SessionStart, LetsForcesThroughOnlyToAnArmWhoseTipIsAtHome) {
+TEST_F(SessionStart, EnablesForcesOnlyAtTheHomePose) {
   const session::Terminal nobody{
       .there = false, .key = [] { return session::EnterKey::kClosed; }, .tell = [](const auto&) {}};
   const std::atomic<bool> stop{false};

@@ -116,7 +116,7 @@ TEST_F(SessionTest, ReportsNoTipThatStartsOutside) {
   EXPECT_TRUE(outside->figures().inside_at_start.empty());
 }
 
-TEST_F(SessionTest, TellsAnObserverOfEveryTickAndChangesNoBitByThat) {
+TEST_F(SessionTest, ObserverGetsEveryTickAndChangesNothing) {
   const auto alone = open("box"), watched = open("box");
   Counter counter;
   ASSERT_TRUE(watched->add_observer(counter));
@@ -131,7 +131,7 @@ TEST_F(SessionTest, TellsAnObserverOfEveryTickAndChangesNoBitByThat) {
   EXPECT_FALSE(watched->add_observer(counter)) << "the run is over";
 }
 
-TEST_F(SessionTest, RunsTickByTickAsItRunsAtOnce) {
+TEST_F(SessionTest, SingleStepsEqualARun) {
   const auto whole = open("box"), stepped = open("box");
   whole->run();
   std::uint64_t steps = 0;
@@ -162,7 +162,7 @@ TEST_F(SessionTest, TakesACustomLawBeforeTheFirstTick) {
   EXPECT_FALSE(wall->set_law(driver::ForceLaw(late)));
 }
 
-TEST_F(SessionTest, LeadsTheHandFromOneTickToTheNext) {
+TEST_F(SessionTest, MovesTheHandFromTickToTick) {
   const auto session = open("box");
   const Eigen::Vector3d aside(0.02, 0.03, 0.05);
   ASSERT_TRUE(session->lead_hand(aside));
@@ -173,7 +173,7 @@ TEST_F(SessionTest, LeadsTheHandFromOneTickToTheNext) {
   EXPECT_LT((Eigen::Map<const Eigen::Vector3d>(end.p_WT.data()) - aside).norm(), 2e-3);
 }
 
-TEST_F(SessionTest, SumsItsFiguresUp) {
+TEST_F(SessionTest, SummarisesItsFigures) {
   const auto session = open("box");
   session->run();
   const session::RunFigures figures = session->figures();
@@ -193,7 +193,7 @@ TEST_F(SessionTest, SumsItsFiguresUp) {
   EXPECT_EQ(stopped->figures().end, driver::ServoEnd::kStopped);
 }
 
-TEST_F(SessionTest, ShowsDentsWhereThereAreSomeAndMeshesByName) {
+TEST_F(SessionTest, ReturnsDentsAndMeshesByName) {
   session::SessionOptions options;
   options.duration = 3;
   const auto balloon = open("water_balloon", options);
@@ -212,7 +212,7 @@ TEST_F(SessionTest, ShowsDentsWhereThereAreSomeAndMeshesByName) {
   EXPECT_FALSE(box->find_object("no such object"));
 }
 
-TEST_F(SessionTest, RecordsReadsAndReplaysToTheBit) {
+TEST_F(SessionTest, RecordingReplaysBitIdentically) {
   const auto file = support::scratch_folder() / "session.h5";
   const auto session = open("rubber");
   for (int i = 0; i < 100; ++i) session->step();
@@ -259,7 +259,7 @@ struct PreparedLaw {
   void prepare(const driver::DeviceState&) const noexcept { ++prepared; }
 };
 
-TEST_F(SessionTest, LetsItsLawPrepareTicksInRealTimeAlone) {
+TEST_F(SessionTest, LawPreparesTicksOnlyInRealTime) {
   PreparedLaw law;
   session::SessionOptions options;
   options.duration = 0.2;
@@ -276,7 +276,7 @@ TEST_F(SessionTest, LetsItsLawPrepareTicksInRealTimeAlone) {
   EXPECT_GT(law.prepared, 0u);
 }
 
-TEST_F(SessionTest, RunsInRealTimeOnAThreadOfItsOwn) {
+TEST_F(SessionTest, RunsInRealTimeOnASeparateThread) {
   session::SessionOptions options;
   options.clock = session::ClockKind::kWall;
   options.duration = 0.2;

@@ -51,7 +51,7 @@ void expect_left(ShapeTrace& trace, const render::TriangleMesh& first,
   }
 }
 
-TEST(ShapeTrace, LeadsFromTheFirstMeshOfATabletToTheOneThatWasLeft) {
+TEST(ShapeTrace, LeadsFromTheInitialToTheFinalMesh) {
   const auto session = support::open_shipped("clay_tablet");
   ASSERT_NE(session, nullptr);
   const scene::SceneObjects& objects = session->setup().objects();
@@ -64,7 +64,7 @@ TEST(ShapeTrace, LeadsFromTheFirstMeshOfATabletToTheOneThatWasLeft) {
   expect_left(trace, first, objects.mesh_now(0));
 }
 
-TEST(ShapeTrace, FindsRoomForALongRunWithoutTheHeap) {
+TEST(ShapeTrace, LongRunFitsWithoutAllocation) {
   session::SessionOptions options;
   options.duration = 2;  // during a stroke
   const auto session = support::open_shipped("clay_tablet", options);

@@ -190,7 +190,7 @@ TEST(Share, CountsPeriodsThatTheLoopMissed) {
   EXPECT_EQ(pair.reader->counters().ticks, 3U);
 }
 
-TEST(Share, CountsATickOfAPauseApartAndMissesNoneThen) {
+TEST(Share, CountsPausedTicksSeparately) {
   for (const bool wall : {true, false}) {
     session::SharedScene scene = small_scene();
     scene.wall_clock = wall;
@@ -210,7 +210,7 @@ TEST(Share, CountsATickOfAPauseApartAndMissesNoneThen) {
   }
 }
 
-TEST(Share, AsksForAPaceAndIgnoresNonsense) {
+TEST(Share, RequestsASpeedAndIgnoresInvalidOnes) {
   session::SharedScene scene = small_scene();
   const auto refused = [](const driver::Result<void>& asked) {
     return asked ? std::string() : asked.error().message;
@@ -222,7 +222,7 @@ TEST(Share, AsksForAPaceAndIgnoresNonsense) {
   }
   scene.paced = scene.restarts = true;
   const Pair pair = joined(scene);
-  EXPECT_FALSE(pair.run->speed_wanted()) << "nobody has asked";
+  EXPECT_FALSE(pair.run->speed_wanted()) << "there is no request";
   EXPECT_EQ(pair.reader->speed_asked(), 1);
   ASSERT_TRUE(pair.reader->ask_speed(0.25));
   EXPECT_EQ(pair.run->speed_wanted(), 0.25);
@@ -247,7 +247,7 @@ TEST(Share, AsksForAPaceAndIgnoresNonsense) {
   EXPECT_EQ(pair.reader->notice(), "line 3: ? wrong\nmore");
 }
 
-TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
+TEST(Share, ReadsAreNeverTorn) {
   const Pair pair = joined(small_scene(), 64);
   std::atomic<bool> stop{false};
   std::atomic<std::uint64_t> reads{0}, torn{0};
@@ -303,7 +303,7 @@ TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
   EXPECT_GE(reads.load(), 1000U) << "nothing was put to the test";
 }
 
-TEST(Share, StoresWithoutTheHeap) {
+TEST(Share, StoresWithoutAllocation) {
   const Pair pair = joined(small_scene());
   render::BodyPatch patch{};
   session::SharedHand hand;
@@ -321,7 +321,7 @@ TEST(Share, StoresWithoutTheHeap) {
   EXPECT_EQ(calls, 0);
 }
 
-TEST(Share, ShowsWhereShapedVerticesHaveGoneForGood) {
+TEST(Share, ShowsPermanentlyMovedVertices) {
   const Pair pair = joined(small_scene());
   const render::TriangleMesh first = mesh_of(pair.reader->scene(), 1);
   render::TriangleMesh mesh = first;
@@ -336,7 +336,7 @@ TEST(Share, ShowsWhereShapedVerticesHaveGoneForGood) {
   EXPECT_EQ(mesh.triangles, first.triangles);
 }
 
-TEST(Share, ShowsTrianglesThatWereSplitForGood) {
+TEST(Share, ShowsPermanentlySplitTriangles) {
   const Pair pair = joined(small_scene());
   render::TriangleMesh mesh = mesh_of(pair.reader->scene(), 1);
   const render::TriangleMesh first = mesh;
@@ -366,7 +366,7 @@ TEST(Share, ShowsTrianglesThatWereSplitForGood) {
   EXPECT_EQ(pair.reader->rejected(), 0U);
 }
 
-TEST(Share, SplitsNoEdgeThatIsNotThere) {
+TEST(Share, RejectsASplitOfAMissingEdge) {
   for (const render::EdgeSplit& wrong : {render::EdgeSplit{.ends = {0, 9}, .triangles = {0, 1}},
                                          render::EdgeSplit{.ends = {-1, 0}, .triangles = {0, 1}},
                                          render::EdgeSplit{.ends = {1, 1}, .triangles = {0, 1}},
@@ -384,7 +384,7 @@ TEST(Share, SplitsNoEdgeThatIsNotThere) {
   }
 }
 
-TEST(Share, TurnsKnobsWithinTheirBoundsAlone) {
+TEST(Share, ChangesKnobsOnlyWithinTheirBounds) {
   const Pair pair = joined(small_scene());
   EXPECT_EQ(pair.reader->knob(0), 800);
   EXPECT_EQ(pair.run->knob_wanted(0), 800);
@@ -398,7 +398,7 @@ TEST(Share, TurnsKnobsWithinTheirBoundsAlone) {
   EXPECT_EQ(pair.reader->knob(0), 400);
 }
 
-TEST(Share, CarriesWhatViewersAskFor) {
+TEST(Share, PassesRequestsOfViewers) {
   const Pair pair = joined(small_scene());
   EXPECT_FALSE(pair.run->pause_asked());
   pair.reader->ask_pause(true);
@@ -420,7 +420,7 @@ TEST(Share, CarriesWhatViewersAskFor) {
   EXPECT_FALSE(pair.run->record_order_after(order->number));
 
   session::SharedHand hand;
-  EXPECT_FALSE(pair.run->hand(hand)) << "nobody has led it";
+  EXPECT_FALSE(pair.run->hand(hand)) << "no viewer has moved it";
   ASSERT_TRUE(pair.reader->lead_hand({0.01, 0.02, 0.03}, true));
   ASSERT_TRUE(pair.run->hand(hand));
   EXPECT_EQ(hand.p_WH[1], 0.02);
@@ -470,7 +470,7 @@ bool is_torn(const driver::Snapshot<T>& snapshot) {
   return reinterpret_cast<const std::atomic<std::uint64_t>*>(&snapshot)->load() % 2 != 0;
 }
 
-TEST(Share, SaysThatAKeyMustBeHeld) {
+TEST(Share, ReportsThatAKeyMustBeHeld) {
   session::SharedScene scene = small_scene();
   EXPECT_FALSE(joined(scene).reader->scene().hold_by_key);
   scene.hold_by_key = true;
@@ -494,7 +494,7 @@ TEST(Share, KeyOfAViewerThatDiesIsReleased) {
   EXPECT_LE(key.until_ns(), session::HeldKey::kLasts_ns);
 }
 
-TEST(Share, LetsTheHandGoWhenTheViewerThatHoldsItDies) {
+TEST(Share, HandOfDeadViewerIsReleased) {
   const Pair pair = joined(small_scene());
   viewer_that_is_killed(pair, [](auto& viewer) { viewer.lead_hand({0, 0, 0}, true); });
   session::SharedHand hand;
@@ -520,7 +520,7 @@ TEST(Share, HalfWrittenHandIsReleasedWhereItWas) {
   pair.run->watch_viewers();
   tear(requests_of(pair).hand);
   session::SharedHand hand;
-  ASSERT_FALSE(pair.run->hand(hand)) << "half of it must not be taken";
+  ASSERT_FALSE(pair.run->hand(hand)) << "a partly written target must be ignored";
   pair.run->watch_viewers();
   ASSERT_TRUE(pair.run->hand(hand));
   EXPECT_EQ(hand.active, 0U);
@@ -537,7 +537,7 @@ TEST(Share, HandThatIsBeingWrittenIsLeftAlone) {
   EXPECT_TRUE(is_torn(requests_of(pair).hand));
 }
 
-TEST(Share, HearsTheNextViewerAfterOneWasKilledInItsTurn) {
+TEST(Share, AcceptsRequestsAfterAViewerWasKilled) {
   const Pair pair = joined(small_scene());
   in_a_viewer_that_is_killed([&] {
     const auto own = pair.run->memory().again().value();
@@ -552,7 +552,7 @@ TEST(Share, HearsTheNextViewerAfterOneWasKilledInItsTurn) {
   EXPECT_EQ(hand.p_WH[0], 2);
 }
 
-TEST(Share, RestartIsHeardAfterHalfWrittenOne) {
+TEST(Share, RestartWorksAfterHalfWrittenOne) {
   session::SharedScene scene = small_scene();
   scene.paced = scene.restarts = true;
   const Pair pair = joined(scene);
@@ -770,7 +770,7 @@ TEST(Share, LiveViewerIsKeptByRunInOtherPidNamespace) {
   EXPECT_TRUE(paused);
 }
 
-TEST(Share, IsForThisUserAloneAndGoneAfterwards) {
+TEST(Share, IsPrivateAndRemovedAfterwards) {
   const std::string name = name_for("private");
   const std::string path = "/dev/shm/thimble-" + std::to_string(geteuid()) + "-" + name;
   {
@@ -793,7 +793,7 @@ TEST(Share, IsForThisUserAloneAndGoneAfterwards) {
   EXPECT_NE(gone.error().message.find("--list"), std::string::npos) << gone.error().message;
 }
 
-TEST(Share, NamePassesToTheNextRunWithoutAGap) {
+TEST(Share, NamePassesToTheNextRunAtomically) {
   const std::string name = name_for("next");
   auto run = session::SharedRun::create(name, small_scene(), 10).value();
   session::SharedScene other = small_scene();
@@ -817,14 +817,14 @@ TEST(Share, NamePassesToTheNextRunWithoutAGap) {
   EXPECT_FALSE(session::SharedReader::attach(name));
 }
 
-TEST(Share, TellsThatNobodyHearsWhatIsAskedOfARunThatIsOver) {
+TEST(Share, RequestsToAFinishedRunAreRejected) {
   session::SharedScene scene = small_scene();
   scene.paced = scene.restarts = true;
   const Pair pair = joined(scene);
   ASSERT_TRUE(pair.reader->ask_restart("/kept.yaml"));
   EXPECT_TRUE(pair.reader->heard());
   pair.run->close();
-  EXPECT_EQ(pair.run->restart_order_after(0)->scene, "/kept.yaml") << "asked before";
+  EXPECT_EQ(pair.run->restart_order_after(0)->scene, "/kept.yaml") << "requested before";
   for (const auto& answer : {pair.reader->heard(), pair.reader->ask_restart("/lost.yaml"),
                              pair.reader->ask_loop(true), pair.reader->ask_speed(2)}) {
     ASSERT_FALSE(answer);
@@ -833,7 +833,7 @@ TEST(Share, TellsThatNobodyHearsWhatIsAskedOfARunThatIsOver) {
   EXPECT_EQ(pair.run->restart_order_after(0)->scene, "/kept.yaml");
 }
 
-TEST(Share, TellsThatARunWasKilledAndClearsItAway) {
+TEST(Share, ReportsAndRemovesAKilledRun) {
   const std::string name = name_for("killed");
   std::array<int, 2> pipe_ends{};
   ASSERT_EQ(pipe(pipe_ends.data()), 0);
@@ -905,7 +905,7 @@ void read_all(session::SharedReader& reader) {
   static_cast<void>(session::arm_lines(reader.scene().arms.front(), tick));
 }
 
-TEST(Share, RefusesAnotherLayoutBeforeAnythingElse) {
+TEST(Share, RejectsAnotherLayoutFirst) {
   const Pair pair = joined(small_scene());
   Copy copy(pair.run->memory().bytes());
   // Only the two words with fixed offsets are valid.
@@ -916,7 +916,7 @@ TEST(Share, RefusesAnotherLayoutBeforeAnythingElse) {
       << reader.error().message;
 }
 
-TEST(Share, RefusesEveryFlippedByteOfWhatDoesNotChange) {
+TEST(Share, RejectsEveryFlippedByteOfConstantData) {
   const Pair pair = joined(small_scene());
   Copy copy(pair.run->memory().bytes());
   const auto& head = *reinterpret_cast<const session::SharedHead*>(copy.bytes.data());
@@ -936,10 +936,10 @@ TEST(Share, RefusesEveryFlippedByteOfWhatDoesNotChange) {
       if (at >= table.offset && at < table.offset + table.count * size) refused(at);
     }
   }
-  EXPECT_TRUE(session::SharedReader::over(copy.bytes)) << "as it was";
+  EXPECT_TRUE(session::SharedReader::over(copy.bytes)) << "unchanged";
 }
 
-TEST(Share, ReadsAnyNonsenseInWhatChangesWithoutHarm) {
+TEST(Share, ReadsInvalidLiveDataSafely) {
   const Pair pair = joined(small_scene());
   for (std::uint64_t i = 0; i < 150; ++i) pair.run->store_tick(tick_number(i));
   pair.run->store_patch({});
@@ -964,7 +964,7 @@ TEST(Share, ReadsAnyNonsenseInWhatChangesWithoutHarm) {
   EXPECT_GT(reader->rejected(), 0U) << "nothing was put to the test";
 }
 
-TEST(Share, RefusesMemoryThatWasCutShort) {
+TEST(Share, RejectsTruncatedMemory) {
   const Pair pair = joined(small_scene());
   for (std::size_t bytes = 0; bytes < pair.run->memory().bytes().size(); bytes += 613) {
     Copy copy(pair.run->memory().bytes().first(bytes));
@@ -972,7 +972,7 @@ TEST(Share, RefusesMemoryThatWasCutShort) {
   }
 }
 
-TEST(Share, OutlivesMemoryThatIsCutShortUnderIt) {
+TEST(Share, SurvivesTruncationOfMappedMemory) {
   const std::string name = name_for("cut");
   const auto run = session::SharedRun::create(name, small_scene(), 100).value();
   for (std::uint64_t i = 0; i < 150; ++i) run->store_tick(tick_number(i));
@@ -986,10 +986,10 @@ TEST(Share, OutlivesMemoryThatIsCutShortUnderIt) {
   EXPECT_EQ(reader->state(), session::RunState::kEnded);
   run->store_tick(tick_number(150));  // the servo survives it too
   EXPECT_TRUE(run->memory().broken());
-  EXPECT_FALSE(session::SharedReader::attach(name)) << "nobody else attaches to it";
+  EXPECT_FALSE(session::SharedReader::attach(name)) << "no other viewer can attach";
 }
 
-TEST(KnobOrder, TurnsTheKnobItNamesAndTellsWhichThereAre) {
+TEST(KnobOrder, ChangesTheNamedKnobAndListsKnobs) {
   const Pair pair = joined(small_scene());
   ASSERT_TRUE(session::turn_knob(*pair.reader, "stiff: stiffness=300.5"));
   EXPECT_EQ(pair.run->knob_wanted(0), 300.5);

@@ -53,7 +53,7 @@ TEST(StartPose, OfEveryShippedArmIsAtItsHomePose) {
   EXPECT_FALSE(session::StartPose::of(file_of("falcon"), ArmKind::kFalcon).has_home());
 }
 
-TEST(StartPose, TellsHowFarTheTipIsFromHomeAndFromTheWorkspace) {
+TEST(StartPose, ReportsDistancesFromHomeAndWorkspace) {
   const session::StartPose place({.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}},
                                  Eigen::Vector3d(0.05, 0, 0));
   EXPECT_EQ(place.trouble({0.05, 0.0199, 0}, true), "");
@@ -71,7 +71,7 @@ TEST(StartPose, TellsHowFarTheTipIsFromHomeAndFromTheWorkspace) {
   EXPECT_NE(homeless.trouble({0.2, 0, 0}, true), "");
 }
 
-TEST(StartPose, NeverLetsThroughWhatIsNoNumber) {
+TEST(StartPose, RejectsPositionsThatAreNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const session::StartPose place({.min_W = {-1, -1, -1}, .max_W = {1, 1, 1}},
                                  Eigen::Vector3d(0, 0, 0));
@@ -139,7 +139,7 @@ class WaitForStartPose : public ::testing::Test {
                               .tell = [this](const std::string& line) { told_.push_back(line); }};
 };
 
-TEST_F(WaitForStartPose, GoesOnAtOnceIfTheTipIsThere) {
+TEST_F(WaitForStartPose, ReturnsAtOnceIfTheTipIsThere) {
   open();
   const int before = messages_;
   EXPECT_TRUE(*wait());
@@ -185,7 +185,7 @@ TEST_F(WaitForStartPose, RestartMeanwhileNeedsHomePoseEvenIfHomed) {
   EXPECT_TRUE(device_->activate());
 }
 
-TEST_F(WaitForStartPose, GivesUpWhereNobodyCanBeAsked) {
+TEST_F(WaitForStartPose, FailsWithoutATerminal) {
   counts_ = {2000, 0, 0, 0, 0, 0};
   open();
   terminal_.there = false;
@@ -198,7 +198,7 @@ TEST_F(WaitForStartPose, GivesUpWhereNobodyCanBeAsked) {
   EXPECT_FALSE(wait());
 }
 
-TEST_F(WaitForStartPose, EndsWhenItIsToldToAndWhenTheArmGoes) {
+TEST_F(WaitForStartPose, EndsOnStopAndWhenTheArmIsLost) {
   counts_ = {2000, 0, 0, 0, 0, 0};
   open();
   user_ = [this](int look) {

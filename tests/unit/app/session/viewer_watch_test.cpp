@@ -53,7 +53,7 @@ class ViewerWatchTest : public ::testing::Test {
   std::optional<ViewerWatch> watch_;
 };
 
-TEST_F(ViewerWatchTest, TellsWhoLooksOnAndWhoHasLeft) {
+TEST_F(ViewerWatchTest, LogsAttachedAndDetachedViewers) {
   EXPECT_EQ(step(), "");
   const std::string self = std::to_string(getpid());
   auto viewer = view();
@@ -64,7 +64,7 @@ TEST_F(ViewerWatchTest, TellsWhoLooksOnAndWhoHasLeft) {
   EXPECT_EQ(step(10), "");
 }
 
-TEST_F(ViewerWatchTest, NoticesThatAViewerDied) {
+TEST_F(ViewerWatchTest, LogsAViewerThatDied) {
   int ready[2];  // the child writes once it is attached
   int leave[2];  // the parent closes once it has detected the child
   ASSERT_EQ(pipe(ready), 0);
@@ -89,7 +89,7 @@ TEST_F(ViewerWatchTest, NoticesThatAViewerDied) {
   close(leave[0]);
 }
 
-TEST_F(ViewerWatchTest, HasRoomForManyViewersAndHoldsOutWithMore) {
+TEST_F(ViewerWatchTest, ManyViewersFitAndMoreAreHarmless) {
   std::vector<std::unique_ptr<SharedReader>> viewers;
   for (std::size_t i = 0; i < kViewersMost + 3; ++i) viewers.push_back(view());
   EXPECT_EQ(run_->viewers().size(), kViewersMost);
@@ -97,7 +97,7 @@ TEST_F(ViewerWatchTest, HasRoomForManyViewersAndHoldsOutWithMore) {
   EXPECT_TRUE(run_->viewers().empty());
 }
 
-TEST_F(ViewerWatchTest, TellsOfAKnobOnceItStandsStill) {
+TEST_F(ViewerWatchTest, LogsAKnobOnceItIsUnchanged) {
   const auto viewer = view();
   step();
   for (int i = 0; i < 20; ++i) {
@@ -115,7 +115,7 @@ TEST_F(ViewerWatchTest, TellsOfAKnobOnceItStandsStill) {
   EXPECT_EQ(step(20), "info tick 5, 0.005 s: A viewer set a: damping from 1 to 0.5 N s/m.\n");
 }
 
-TEST_F(ViewerWatchTest, TellsOfAPause) {
+TEST_F(ViewerWatchTest, LogsAPause) {
   const auto viewer = view();
   step();
   viewer->ask_pause(true);

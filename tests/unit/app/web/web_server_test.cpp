@@ -163,7 +163,7 @@ class WebServerTest : public ::testing::Test {
   std::uint64_t lost_ = 0;
 };
 
-TEST(RequestGuard, LetsInWhoKnowsTheTokenAndAsksAsThePageItself) {
+TEST(RequestGuard, RequiresTheTokenAndTheServedOrigin) {
   const RequestGuard guard = RequestGuard::make().value();
   EXPECT_EQ(guard.token().size(), 32U);
   EXPECT_NE(guard.token(), RequestGuard::make().value().token());
@@ -223,7 +223,7 @@ TEST_F(WebServerTest, NothingIsSentWithoutTheToken) {
   }
 }
 
-TEST_F(WebServerTest, AsksOfTheRunWhatThePageItselfPostsAlone) {
+TEST_F(WebServerTest, AcceptsCommandsOnlyFromThePage) {
   const std::string own = "http://" + here(), token = token_.substr(7);
   run_ticks(1);
   Page page(io_);
@@ -232,11 +232,11 @@ TEST_F(WebServerTest, AsksOfTheRunWhatThePageItselfPostsAlone) {
   EXPECT_EQ(post("pause", {"/steer", {}, "http://evil.example"}, token), 403U);
   EXPECT_EQ(post("pause", {"/steer", {}, own}, ""), 403U);
   EXPECT_EQ(post("pause", {"/steer" + token_, {}, own}, ""), 403U);
-  EXPECT_EQ(get({"/steer" + token_, {}, own}).first, 403U) << "nothing is asked for by GET";
+  EXPECT_EQ(get({"/steer" + token_, {}, own}).first, 403U) << "commands by GET are refused";
   EXPECT_FALSE(run_->pause_asked());
   EXPECT_EQ(post("pause", {"/steer", {}, own}, token), 200U);
   EXPECT_TRUE(run_->pause_asked());
-  EXPECT_EQ(post("restart", {"/steer", {}, own}, token), 409U) << "nobody would begin it anew";
+  EXPECT_EQ(post("restart", {"/steer", {}, own}, token), 409U) << "the run cannot be restarted";
 }
 
 TEST_F(WebServerTest, IdleConnectionsDoNotKeepPagesOut) {
@@ -249,7 +249,7 @@ TEST_F(WebServerTest, IdleConnectionsDoNotKeepPagesOut) {
   EXPECT_EQ(open(page), 101U);
 }
 
-TEST_F(WebServerTest, OpenPagesOutliveIdleConnections) {
+TEST_F(WebServerTest, OpenPagesSurviveIdleConnections) {
   run_ticks(1);
   Page page(io_);
   ASSERT_EQ(open(page), 101U);
@@ -363,7 +363,7 @@ TEST_F(WebServerTest, ThePageHasTheLastTickOfARunThatEnds) {
   EXPECT_EQ(page.reason().code, websocket::close_code::normal);
 }
 
-TEST_F(WebServerTest, AnotherRunOfTheNameIsToldToPagesThatLoadAnew) {
+TEST_F(WebServerTest, ReloadShowsNewRunOfSameName) {
   Page page(io_);
   ASSERT_EQ(open(page), 101U);
   run_ticks(10);
@@ -414,7 +414,7 @@ TEST_F(WebServerTest, TheFirstUpdateNamesTheRun) {
   EXPECT_NE(runs[0], runs[1]);
 }
 
-TEST_F(WebServerTest, ARunIsNotSteeredByAPageOfAnother) {
+TEST_F(WebServerTest, PageOfAnotherRunCannotSteerARun) {
   const std::string own = "http://" + here(), token = token_.substr(7);
   run_ticks(1);
   Page page(io_);
@@ -424,7 +424,7 @@ TEST_F(WebServerTest, ARunIsNotSteeredByAPageOfAnother) {
   EXPECT_FALSE(run_->pause_asked());
 }
 
-TEST(WebServer, APortThatIsTakenIsRefusedWithASentence) {
+TEST(WebServer, UsedPortIsAnError) {
   session::RunAttachment runs("none");
   const auto first = WebServer::listen(runs, 0);
   ASSERT_TRUE(first);

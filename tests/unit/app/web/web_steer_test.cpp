@@ -36,11 +36,12 @@ struct Steered {
   std::unique_ptr<session::SharedReader> reader;
 };
 
-TEST(SteerRun, PausesStepsBeginsAnewAndTurnsKnobs) {
+TEST(SteerRun, PausesStepsRestartsAndChangesKnobs) {
   const Steered steered;
   EXPECT_EQ(steered.ask("pause"), "");
   EXPECT_TRUE(steered.run->pause_asked());
-  EXPECT_NE(steered.ask("step 3").find("pause it first"), std::string::npos) << "it goes on still";
+  EXPECT_NE(steered.ask("step 3").find("pause it first"), std::string::npos)
+      << "the run is not paused";
   steered.run->set_state(session::RunState::kPaused);
   EXPECT_EQ(steered.ask("step 3"), "");
   EXPECT_EQ(steered.run->steps_asked(), 3U);
@@ -53,7 +54,7 @@ TEST(SteerRun, PausesStepsBeginsAnewAndTurnsKnobs) {
   EXPECT_EQ(steered.run->restart_order_after(0)->scene, "") << "no page names a file";
 }
 
-TEST(SteerRun, TellsWhatItCannotAskFor) {
+TEST(SteerRun, RejectsUnsupportedRequests) {
   const Steered steered;
   for (const char* words :
        {"", " ", "stop", "pause now", "restart /etc/passwd", "step", "step ", "step -1", "step 1x",
@@ -83,7 +84,7 @@ TEST(SteerRun, TellsWhatItCannotAskFor) {
   EXPECT_EQ(desk.ask("pause"), "The run has ended.");
 }
 
-TEST(SteerRun, IsShownToPagesWithKnobsAndWhatTheRunTells) {
+TEST(SteerRun, PagesShowKnobsAndTheNotice) {
   const Steered steered;
   LiveFeed feed(*steered.reader);
   LiveFeed::Place place;
@@ -94,7 +95,7 @@ TEST(SteerRun, IsShownToPagesWithKnobsAndWhatTheRunTells) {
   const auto updates = updates_of(feed.message(place));
   ASSERT_FALSE(updates.empty());
   const nlohmann::json& last = updates.back().json;
-  EXPECT_EQ(last["knobs"], nlohmann::json::array({77.0})) << "told though no tick has passed";
+  EXPECT_EQ(last["knobs"], nlohmann::json::array({77.0})) << "reported without a new tick";
   EXPECT_EQ(last["notice"], "line 3: wrong");
 }
 
