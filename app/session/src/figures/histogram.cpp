@@ -7,7 +7,7 @@
 namespace thimble::session {
 namespace {
 
-// From 2^11 on, each power of two is divided into 2^10 equal bins, so the width of a bin is at most
+// From 2^11 on, each power of two is divided into 2^10 equal bins. So the width of a bin is at most
 // 2^-10 of its lower end. A percentile needs only 1 %; 0.1 % resolves the jitter at 1 kHz to 1 us.
 constexpr int kSubBits = 10;
 constexpr std::int64_t kLinearEnd = std::int64_t{1} << (kSubBits + 1);

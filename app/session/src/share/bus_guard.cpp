@@ -23,7 +23,7 @@ static_assert(std::atomic<std::uintptr_t>::is_always_lock_free,
 std::array<Guarded, BusGuard::kMost> guarded;
 std::uintptr_t page_size = 4096;
 
-/// Maps a page of zeros in place of a missing page. mmap is a plain system call, so it is safe in a
+/// Replaces a missing page by a page of zeros. mmap is a plain system call, so it is safe in a
 /// signal handler [libwayland does the same for its buffers].
 void on_bus_error(int number, siginfo_t* info, void*) {
   const auto address = reinterpret_cast<std::uintptr_t>(info->si_addr);

@@ -1,4 +1,4 @@
-// Recordings of unknown origin. Whatever an HDF5 file contains, no other file is read, memory is
+// Recordings of unknown origin. Whatever an HDF5 file contains, no other file is read. Memory is
 // bounded by the size of the file, and a crash of the library is an ordinary error.
 
 #include <gtest/gtest.h>
