@@ -7,10 +7,10 @@
 
 namespace thimble::bag {
 
-/// Along which axes the vectors of a bag are told.
+/// Axes of the vectors in a bag.
 enum class BagAxes : std::uint8_t {
-  kPlain,  ///< Those of the world W: x to the user, y to the user's right, z up.
-  kOmni,   ///< Those of the Omni's drivers: x to the right, y away from the user, z up.
+  kPlain,  ///< Axes of the world W: x towards the user, y to the user's right, z up.
+  kOmni,   ///< Axes of the Omni's drivers: x to the right, y away from the user, z up.
 };
 
 /// Returns a vector of a bag in the world's axes. Real-time: safe.

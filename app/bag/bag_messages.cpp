@@ -9,10 +9,11 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr std::size_t kHeaderBytes = 4;          // which order of bytes, and options
+constexpr std::size_t kHeaderBytes = 4;          // byte order and options
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 
-/// How many numbers stand in a message behind its header: a point and a rotation, or two vectors.
+/// Returns the number of numbers after the header of a message: a point and a rotation, or two
+/// vectors.
 std::size_t numbers_in(BagKind kind) {
   return kind == BagKind::kPositions ? 7 : 6;
 }
@@ -34,7 +35,7 @@ class CdrReader {
   }
 
   bool read(std::string& text) {
-    std::uint32_t length = 0;  // with the zero at its end
+    std::uint32_t length = 0;  // including the terminating zero
     if (!read(length) || body_.size() - at_ < length) return false;
     text.assign(reinterpret_cast<const char*>(body_.data()) + at_, length == 0 ? 0 : length - 1);
     const bool ended = length == 0 || body_[at_ + length - 1] == 0;
@@ -77,7 +78,7 @@ std::string_view type_of(BagKind kind) noexcept {
 }
 
 std::optional<StampedVector> decode(BagKind kind, std::span<const unsigned char> bytes) {
-  // The first two bytes: 0 0 for big-endian, 0 1 for little-endian; others are encodings that
+  // The first two bytes are 0 0 for big-endian and 0 1 for little-endian. Others are encodings that
   // ROS 2 does not write.
   if (bytes.size() < kHeaderBytes || bytes[0] != 0 || bytes[1] > 1) return {};
   CdrReader reader(bytes.subspan(kHeaderBytes), bytes[1] == 0);
@@ -91,7 +92,7 @@ std::optional<StampedVector> decode(BagKind kind, std::span<const unsigned char>
   for (std::size_t i = 0; i < numbers_in(kind); ++i) {
     if (!reader.read(numbers[i])) return {};
   }
-  // Writers may fill up to the next word; more is another message.
+  // Writers may pad up to the next word; more bytes mean another message type.
   if (reader.left() >= sizeof(double)) return {};
   message.value = {numbers[0], numbers[1], numbers[2]};
   return message;
@@ -100,7 +101,7 @@ std::optional<StampedVector> decode(BagKind kind, std::span<const unsigned char>
 std::vector<unsigned char> encode(BagKind kind, const StampedVector& message,
                                   const std::array<double, 4>& q) {
   CdrWriter writer;
-  // Whole seconds towards the past, so that the rest is not negative.
+  // Rounds the seconds down, so that the rest is not negative.
   std::int64_t seconds = message.stamp_ns / kSecond, rest = message.stamp_ns % kSecond;
   if (rest < 0) --seconds, rest += kSecond;
   writer.write(static_cast<std::int32_t>(seconds));

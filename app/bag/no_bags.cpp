@@ -1,4 +1,4 @@
-// Stands in for reading and writing of bags where there was no SQLite to build them with.
+// Replaces the reader and the writer of bags in builds without SQLite.
 #include "bag/read_bag.h"
 #include "bag/write_bag.h"
 
@@ -7,8 +7,8 @@ namespace {
 
 driver::Error none(const std::filesystem::path& path) {
   return {path.string() +
-          ": this build knows no ROS bags, for libsqlite3-dev was not there; install it and build "
-          "again."};
+          ": built without ROS bag support, because libsqlite3-dev was missing; install it and "
+          "rebuild."};
 }
 
 }  // namespace

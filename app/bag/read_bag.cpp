@@ -17,12 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Five hours at 1 kHz; a file that means more is damaged, or more than a hand does. [chosen]
+// Five hours at 1 kHz. [chosen: a file with more is damaged, or longer than any session]
 constexpr std::size_t kMessagesMost = 20'000'000;
-constexpr std::int64_t kLongest = 86'400'000'000'000;  // ns; a day, so that a double tells ns apart
-constexpr std::int64_t kLatest = std::int64_t{1} << 62;  // ns; differences stay in range
+constexpr std::int64_t kLongest =
+    86'400'000'000'000;  // ns; one day, so that a double in s resolves ns
+constexpr std::int64_t kLatest = std::int64_t{1} << 62;  // ns; so that differences do not overflow
 
-/// A message as it is kept: a stamp of its own and when it was received.
+/// Message in memory, with its stamp and its time of reception.
 struct Kept {
   std::int64_t received_ns = 0, stamp_ns = 0;
   Eigen::Vector3d value;
@@ -43,11 +44,11 @@ std::string_view word_of(BagKind kind) {
   return kind == BagKind::kPositions ? "/pose" : "/wrench";
 }
 
-/// Finds the files of a bag, in the order of their names.
+/// Returns the files of a bag, sorted by name.
 driver::Result<std::vector<fs::path>> files_of(const fs::path& path) {
   std::error_code status;
   std::vector<fs::path> files;
-  std::string other;  // why there may be none
+  std::string other;  // extension of another bag format, if found
   const auto judge = [&](const fs::path& file) {
     const std::string end = file.extension().string();
     if (end == ".mcap" || end == ".zstd") other = end;
@@ -62,27 +63,27 @@ driver::Result<std::vector<fs::path>> files_of(const fs::path& path) {
     judge(path);
     if (other.empty()) files.push_back(path);
   } else {
-    return driver::Error{path.string() +
-                         ": no such bag; expected a folder that `ros2 bag record` made, or the "
-                         ".db3 file in it."};
+    return driver::Error{
+        path.string() +
+        ": no such bag; expected a folder made by `ros2 bag record`, or the .db3 file in it."};
   }
   if (!files.empty()) return files;
   if (other == ".mcap") {
-    return driver::Error{path.string() +
-                         ": is a bag in MCAP, which cannot be read here; `ros2 bag convert` "
-                         "writes it as sqlite3."};
+    return driver::Error{
+        path.string() +
+        ": MCAP bags are not supported; convert it to sqlite3 with `ros2 bag convert`."};
   }
   if (other == ".zstd") {
-    return driver::Error{path.string() +
-                         ": is a compressed bag; `ros2 bag convert` writes it without "
-                         "compression."};
+    return driver::Error{
+        path.string() +
+        ": compressed bags are not supported; decompress it with `ros2 bag convert`."};
   }
-  return driver::Error{path.string() + ": no bag is there; expected a file *.db3 in the folder."};
+  return driver::Error{path.string() + ": contains no bag; expected a file *.db3 in the folder."};
 }
 
 driver::Error damaged(const fs::path& file, const std::string& how) {
-  return {fmt::format("{}: is damaged, or no ROS bag ({}); copy or record it again.", file.string(),
-                      how)};
+  return {fmt::format("{}: is damaged, or not a ROS bag ({}); copy or record it again.",
+                      file.string(), how)};
 }
 
 driver::Result<OpenBag> open_bag(const fs::path& file) {
@@ -95,9 +96,9 @@ driver::Result<OpenBag> open_bag(const fs::path& file) {
   auto counted = tables->next();
   if (!counted) return damaged(file, counted.error().message);
   if (!*counted || tables->number(0) != 2) {
-    return driver::Error{file.string() +
-                         ": is a file of SQLite but no ROS bag: it lacks the tables topics and "
-                         "messages."};
+    return driver::Error{
+        file.string() +
+        ": is an SQLite file but not a ROS bag: the tables topics and messages are missing."};
   }
   auto rows = bag.data.ask("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
   if (!rows) return damaged(file, rows.error().message);
@@ -128,7 +129,7 @@ std::string topics_in(const std::vector<OpenBag>& bags) {
   return text;
 }
 
-/// Returns the name of the topic that is meant.
+/// Returns the name of the topic to read.
 driver::Result<std::string> choose_topic(const fs::path& path, const std::vector<OpenBag>& bags,
                                          BagKind kind, const std::string& asked) {
   std::vector<std::string> fitting;
@@ -148,16 +149,16 @@ driver::Result<std::string> choose_topic(const fs::path& path, const std::vector
   if (!asked.empty()) {
     if (found(asked)) return asked;
     if (named != nullptr) {
-      return driver::Error{
-          fmt::format("{}: the topic {} is of type {}; expected {}. There are: {}.", path.string(),
-                      asked, named->type, type_of(kind), topics_in(bags))};
+      return driver::Error{fmt::format("{}: the topic {} is of type {}; expected {}. Topics: {}.",
+                                       path.string(), asked, named->type, type_of(kind),
+                                       topics_in(bags))};
     }
     return driver::Error{
-        fmt::format("{}: has no topic {}. There are: {}.", path.string(), asked, topics_in(bags))};
+        fmt::format("{}: has no topic {}. Topics: {}.", path.string(), asked, topics_in(bags))};
   }
   if (fitting.size() == 1) return fitting.front();
   if (found(std::string(word_of(kind)))) return std::string(word_of(kind));
-  return driver::Error{fmt::format("{}: has {} of type {}{}. There are: {}.", path.string(),
+  return driver::Error{fmt::format("{}: has {} of type {}{}. Topics: {}.", path.string(),
                                    fitting.empty() ? "no topic" : "several topics", type_of(kind),
                                    fitting.empty() ? "" : "; name one", topics_in(bags))};
 }
@@ -183,23 +184,23 @@ driver::Result<void> add_messages(const OpenBag& bag, const TopicRow& topic, Bag
     if (!message || received_ns < 0 || received_ns > kLatest) {
       constexpr std::array<unsigned char, 4> kZstd{0x28, 0xB5, 0x2F, 0xFD};  // [S RFC 8878, 3.1.1]
       if (bytes.size() > 4 && std::equal(kZstd.begin(), kZstd.end(), bytes.begin())) {
-        return wrong("is compressed; `ros2 bag convert` writes a bag without compression.");
+        return wrong("is compressed; decompress the bag with `ros2 bag convert`.");
       }
-      return wrong(
-          fmt::format("is no {}: the bag is damaged; record or convert it again.", type_of(kind)));
+      return wrong(fmt::format("is not a {}: the bag is damaged; record or convert it again.",
+                               type_of(kind)));
     }
     if (!message->value.allFinite()) {
-      return wrong("holds a number that is not finite; leave it out, or mend what published it.");
+      return wrong(
+          "contains a number that is not finite; remove the message, or fix its publisher.");
     }
     if (!frame) frame = message->frame;
     if (*frame != message->frame) {
-      return wrong(
-          fmt::format("is told in the frame \"{}\", those before in \"{}\"; expected one "
-                      "frame for all.",
-                      driver::printable_name(message->frame), driver::printable_name(*frame)));
+      return wrong(fmt::format(
+          "is in the frame \"{}\", the previous ones in \"{}\"; expected one frame for all.",
+          driver::printable_name(message->frame), driver::printable_name(*frame)));
     }
     if (kept.size() == kMessagesMost) {
-      return wrong("is one too many: 20 million can be read; cut the bag.");
+      return wrong("exceeds the limit of 20 million messages; split the bag.");
     }
     kept.push_back({received_ns, message->stamp_ns, message->value});
   }
@@ -240,9 +241,9 @@ driver::Result<BagTopic> read_bag(const std::filesystem::path& path, BagKind kin
     }
   }
   if (kept.empty()) {
-    return driver::Error{fmt::format("{}: {} holds no message.", path.string(), *name)};
+    return driver::Error{fmt::format("{}: {} has no messages.", path.string(), *name)};
   }
-  // Files of one bag follow each other; their messages are in order already.
+  // The files of a bag are consecutive, so the messages are almost sorted already.
   std::stable_sort(kept.begin(), kept.end(),
                    [](const Kept& a, const Kept& b) { return a.received_ns < b.received_ns; });
   const bool stamped = std::any_of(kept.begin(), kept.end(),
@@ -259,17 +260,16 @@ driver::Result<BagTopic> read_bag(const std::filesystem::path& path, BagKind kin
   for (const Kept& message : kept) {
     const std::int64_t time_ns = time_of(message);
     if (!read.samples.empty() && time_ns < last_ns) {
-      return driver::Error{fmt::format(
-          "{}: {} goes back in time after {:g} s, by {:g} s; record it again by one clock, or cut "
-          "the bag there.",
-          path.string(), *name, 1e-9 * static_cast<double>(last_ns - read.start_ns),
-          1e-9 * static_cast<double>(last_ns - time_ns))};
+      return driver::Error{
+          fmt::format("{}: the time of {} decreases after {:g} s, by {:g} s; record it again with "
+                      "one clock, or split the bag there.",
+                      path.string(), *name, 1e-9 * static_cast<double>(last_ns - read.start_ns),
+                      1e-9 * static_cast<double>(last_ns - time_ns))};
     }
     if (!read.samples.empty() && time_ns == last_ns) continue;
     if (time_ns - read.start_ns > kLongest) {
-      return driver::Error{
-          fmt::format("{}: {} lasts for more than a day; mend its stamps, or cut the bag.",
-                      path.string(), *name)};
+      return driver::Error{fmt::format(
+          "{}: {} lasts more than a day; fix its stamps, or split the bag.", path.string(), *name)};
     }
     last_ns = time_ns;
     read.samples.push_back({1e-9 * static_cast<double>(time_ns - read.start_ns), message.value});

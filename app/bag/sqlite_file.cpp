@@ -65,14 +65,14 @@ driver::Result<SqliteFile> SqliteFile::open(const std::filesystem::path& file, i
   SqliteFile result;
   result.file_.reset(opened);
   if (status != SQLITE_OK) {
-    return driver::Error{opened == nullptr ? "there is no memory" : sqlite3_errmsg(opened)};
+    return driver::Error{opened == nullptr ? "out of memory" : sqlite3_errmsg(opened)};
   }
   return result;
 }
 
 driver::Result<SqliteFile> SqliteFile::open(const std::filesystem::path& file) {
-  // SQLite waits for a writer to a pipe.
-  if (!driver::is_regular(file)) return driver::Error{"it is no regular file"};
+  // Rejected here, because SQLite would wait for a writer if the file is a pipe.
+  if (!driver::is_regular(file)) return driver::Error{"not a regular file"};
   auto opened = open(file, SQLITE_OPEN_READONLY);
   if (!opened) return opened;
   sqlite3* const raw = opened->file_.get();

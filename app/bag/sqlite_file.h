@@ -14,24 +14,24 @@ struct sqlite3_stmt;
 
 namespace thimble::bag {
 
-/// A question or an order to a file of SQLite, with its answer row by row. Real-time: never from
-/// the servo thread.
+/// Prepared statement on an SQLite file, with its result row by row. Real-time: never from the
+/// servo thread.
 class SqliteStatement {
  public:
-  /// Goes to the next row; false if there is none. The error is SQLite's.
+  /// Advances to the next row; returns false if there is none. The error is SQLite's.
   driver::Result<bool> next();
-  /// Returns a number of the row; 0 if it is none.
+  /// Returns an integer column of the row; 0 if it is not a number.
   std::int64_t number(int column) const;
-  /// Returns a text of the row, until the next one.
+  /// Returns a text column of the row; valid until the next row.
   std::string_view text(int column) const;
-  /// Returns bytes of the row, until the next one.
+  /// Returns a blob column of the row; valid until the next row.
   std::span<const unsigned char> bytes(int column) const;
 
-  /// Puts a value for a `?` (from 1). What it names must stay until `next`.
+  /// Binds a value to a `?` (numbered from 1). Text and bytes must stay valid until `next`.
   void put(int place, std::int64_t value);
   void put(int place, std::string_view value);                ///< As above.
   void put(int place, std::span<const unsigned char> value);  ///< As above.
-  /// Makes it ready for other values.
+  /// Resets the statement, for other values.
   void reset();
 
  private:
@@ -42,18 +42,17 @@ class SqliteStatement {
   std::unique_ptr<sqlite3_stmt, End> statement_;
 };
 
-/// A file of SQLite. Real-time: never from the servo thread.
+/// SQLite file. Real-time: never from the servo thread.
 class SqliteFile {
  public:
-  /// Opens a file that is there, to read it alone. What is in it is not trusted: nothing in it is
-  /// run.
+  /// Opens an existing file read-only. Its contents are not trusted: no code in it is executed.
   static driver::Result<SqliteFile> open(const std::filesystem::path& file);
-  /// Makes a new file. Precondition: there is none of that name.
+  /// Creates a new file. Precondition: no file with that name exists.
   static driver::Result<SqliteFile> create(const std::filesystem::path& file);
 
-  /// Prepares a question; the error is SQLite's.
+  /// Prepares a statement; the error is SQLite's.
   driver::Result<SqliteStatement> ask(const std::string& question) const;
-  /// Carries out orders that answer nothing.
+  /// Executes statements that return no rows.
   driver::Result<void> run(const std::string& orders) const;
 
  private:

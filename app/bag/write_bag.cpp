@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// As rosbag2 of Humble makes them [S ros2/rosbag2 sqlite_storage.cpp].
+// Same tables as those of rosbag2 of Humble [S ros2/rosbag2 sqlite_storage.cpp].
 constexpr const char* kTables =
     "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
     "serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);"
@@ -22,7 +22,7 @@ constexpr const char* kTables =
     "timestamp INTEGER NOT NULL, data BLOB NOT NULL);"
     "CREATE INDEX timestamp_idx ON messages (timestamp ASC);";
 
-/// Writes all messages, by time: players take them in the order of the table.
+/// Writes all messages sorted by time, because players read them in the order of the table.
 driver::Result<void> fill(const SqliteFile& file, const std::vector<BagTrack>& tracks) {
   auto topic = file.ask("INSERT INTO topics VALUES (?, ?, ?, 'cdr', '')");
   if (!topic) return topic.error();
@@ -109,13 +109,13 @@ driver::Result<void> write_bag(const std::filesystem::path& folder,
                                const std::vector<BagTrack>& tracks) {
   std::error_code failed;
   if (fs::exists(folder, failed) && !fs::is_empty(folder, failed)) {
-    return driver::Error{folder.string() + ": is there already; name a folder that is not."};
+    return driver::Error{folder.string() + ": already exists; choose a new folder."};
   }
   const auto cannot = [&folder](const std::string& why) {
     return driver::Error{folder.string() + ": the bag cannot be written: " + why +
-                         ". Is there room on the disk, and may you write there?"};
+                         ". Check the free space on the disk and your write permission."};
   };
-  // "bag/" ends in an empty name.
+  // The last component of "bag/" is empty.
   fs::path named = fs::absolute(folder).lexically_normal();
   if (!named.has_filename()) named = named.parent_path();
   const bool created = fs::create_directories(named, failed);
@@ -123,7 +123,7 @@ driver::Result<void> write_bag(const std::filesystem::path& folder,
   const fs::path database = named / (named.filename().string() + "_0.db3");
   const fs::path text = named / "metadata.yaml";
   if (auto written = write_files(database, text, tracks); !written) {
-    // A part of a bag is of no use, and the next attempt would find its folder occupied.
+    // Removes the incomplete bag, which would block the next attempt.
     std::error_code ignored;
     fs::remove(database, ignored);
     fs::remove(text, ignored);

@@ -12,24 +12,24 @@
 
 namespace thimble::bag {
 
-/// A message to write.
+/// Message to write.
 struct BagMessage {
-  std::int64_t time_ns = 0;             ///< Of the stamp, and when it counts as received; >= 0.
-  Eigen::Vector3d value{0, 0, 0};       ///< m or N.
-  std::array<double, 4> q{1, 0, 0, 0};  ///< Of a pose the rotation (w, x, y, z).
+  std::int64_t time_ns = 0;             ///< Time of the stamp and of reception, ns; >= 0.
+  Eigen::Vector3d value{0, 0, 0};       ///< Value, m or N.
+  std::array<double, 4> q{1, 0, 0, 0};  ///< Rotation of a pose (w, x, y, z).
 };
 
-/// A topic to write.
+/// Topic to write.
 struct BagTrack {
-  std::string name;                    ///< "/pose"
-  BagKind kind = BagKind::kPositions;  ///< Of all its messages.
-  std::string frame = "world";         ///< In which they are told.
-  std::vector<BagMessage> messages;    ///< Times that grow.
+  std::string name;                    ///< Name, such as "/pose".
+  BagKind kind = BagKind::kPositions;  ///< Kind of all messages.
+  std::string frame = "world";         ///< Frame of all messages.
+  std::vector<BagMessage> messages;    ///< Messages with increasing times.
 };
 
-/// Writes a ROS 2 bag in SQLite as `ros2 bag play` of Humble reads it: a folder with metadata.yaml
-/// (version 5) and one .db3 file of the folder's name. The folder must not be there yet, or be
-/// empty. The error says what cannot be written. Real-time: never from the servo thread.
+/// Writes a ROS 2 bag in SQLite for `ros2 bag play` of Humble: a folder with metadata.yaml (version
+/// 5) and one .db3 file with the folder's name. The folder must not exist yet, or be empty. The
+/// error says what cannot be written. Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<void> write_bag(const std::filesystem::path& folder,
                                               const std::vector<BagTrack>& tracks);
 

@@ -194,7 +194,7 @@ void SceneRun::finish() {
   servo_.reset();  // no longer keeps the processor awake
   if (const auto kept = session_->keep_black_boxes(true); kept) {
     for (const auto& file : *kept) {
-      scene::logger().warn("The last seconds before the fault were saved to {}.", file.string());
+      scene::logger().warn("the last seconds before the fault are saved in {}", file.string());
     }
   }
   if (const auto ended = session_->end_recording(); !ended)

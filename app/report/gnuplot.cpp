@@ -19,7 +19,7 @@ namespace thimble::report {
 namespace {
 
 constexpr const char* kMissingMessage =
-    "gnuplot draws the pictures but was not found: install it (apt install gnuplot-nox).";
+    "gnuplot, which draws the pictures, was not found: install it (apt install gnuplot-nox).";
 
 enum class RunEnd { kGood, kMissing, kBad };
 

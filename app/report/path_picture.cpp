@@ -299,12 +299,12 @@ driver::Result<void> draw_mesh(const render::TriangleMesh& mesh,
   if (mesh.vertices.empty()) return driver::Error{"A mesh without vertices cannot be drawn."};
   const std::string ending = picture.extension().string();
   if (ending != ".png" && ending != ".svg") {
-    return driver::Error{picture.string() + ": a picture's name must end in .png or .svg."};
+    return driver::Error{picture.string() + ": the name of a picture must end in .png or .svg."};
   }
   // Data and script go to a temporary folder, so that only the picture remains.
   std::string pattern = (std::filesystem::temp_directory_path() / "thimble-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) {
-    return driver::Error{"Cannot make a temporary folder like " + pattern + "."};
+    return driver::Error{"Cannot create a temporary folder like " + pattern + "."};
   }
   const std::filesystem::path folder = pattern;
   driver::Result<void> done = make_picture_folder(folder);

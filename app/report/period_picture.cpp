@@ -60,7 +60,7 @@ std::string in_us(double ns) {
 }
 
 std::string percentiles(const session::Histogram& histogram) {
-  return "half ≤ " + in_us(histogram.percentile(0.5)) + "    99 % ≤ " +
+  return "median ≤ " + in_us(histogram.percentile(0.5)) + "    99 % ≤ " +
          in_us(histogram.percentile(0.99)) + "    99.9 % ≤ " + in_us(histogram.percentile(0.999)) +
          "    longest " + in_us(static_cast<double>(histogram.max_ns())) + "  µs";
 }
@@ -126,7 +126,7 @@ driver::Result<void> draw_period_histogram(const PictureInfo& info,
   first.insert(first.find("plot "),
                heading_label + "set arrow 1 from " + number(nominal) + ", graph 0 to " +
                    number(nominal) + ", graph 1 nohead back lw 1.5 dt 2 lc rgb '" + kInk +
-                   "'\nset label 3 'asked' at " + number(nominal) +
+                   "'\nset label 3 'requested' at " + number(nominal) +
                    ", graph 0.93 offset 0.8,0 textcolor rgb '" + kInk + "'\n" +
                    (with_work ? "unset xlabel\n" : "set xlabel 'time [µs]'\n"));
   c << first << "unset arrow 1\n";

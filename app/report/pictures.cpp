@@ -98,7 +98,7 @@ driver::Result<void> make_picture_folder(const std::filesystem::path& folder) {
   std::error_code status;
   std::filesystem::create_directories(folder / "data", status);
   if (status) {
-    return driver::Error{"Cannot make the folder " + (folder / "data").string() + ": " +
+    return driver::Error{"Cannot create the folder " + (folder / "data").string() + ": " +
                          status.message() + "."};
   }
   return {};

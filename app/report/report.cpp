@@ -115,7 +115,7 @@ driver::Result<void> write_report(const session::RunFigures& report,
   std::error_code status;
   std::filesystem::create_directories(folder, status);
   if (status) {
-    return driver::Error{"Cannot make the folder " + folder.string() + ": " + status.message() +
+    return driver::Error{"Cannot create the folder " + folder.string() + ": " + status.message() +
                          "."};
   }
   if (auto done = write_json(to_json(report), folder / "report.json"); !done) return done;

@@ -10,10 +10,10 @@ namespace {
 
 constexpr std::size_t kTokenBytes = 16;
 constexpr std::string_view kAsk = "?token=";
-constexpr const char* kNotOurs = "A page of somebody else's asked; only this page's own may.";
+constexpr const char* kNotOurs = "Requests from other pages are refused.";
 constexpr const char* kWrongToken =
-    "The token is not right; open the address that `thimble view --web` has printed.";
-constexpr const char* kNothingElse = "There is nothing else here.";
+    "The token is wrong; open the address printed by `thimble view --web`.";
+constexpr const char* kNothingElse = "No such page.";
 
 // Compares in constant time: the duration does not depend on how many characters match.
 bool same(std::string_view a, std::string_view b) {
@@ -36,8 +36,8 @@ driver::Result<RequestGuard> RequestGuard::make() {
   std::array<unsigned char, kTokenBytes> bytes{};
   if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
     return driver::Error{
-        "The kernel gave no random numbers (getrandom), without which nobody can be kept out; the "
-        "page is not served."};
+        "The kernel returned no random numbers (getrandom) for the access token, so the page is "
+        "not served."};
   }
   std::string token;
   for (const unsigned char byte : bytes) {
@@ -49,8 +49,8 @@ driver::Result<RequestGuard> RequestGuard::make() {
 
 std::string RequestGuard::refuse_place(const Request& request, std::uint16_t port) {
   if (!is_here(request.host, port)) {
-    return "This page is asked for as 127.0.0.1 or localhost, with its own port; over ssh, forward "
-           "the same port (ssh -L).";
+    return "Open this page as 127.0.0.1 or localhost with its own port; over ssh, forward the same "
+           "port (ssh -L).";
   }
   constexpr std::string_view kScheme = "http://";
   if (!request.origin.empty() && (!request.origin.starts_with(kScheme) ||

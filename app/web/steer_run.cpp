@@ -27,7 +27,7 @@ driver::Result<void> ask(session::SharedReader& reader, std::string_view request
     return reader.ask_steps(ticks);
   }
   return driver::Error{
-      "A run is asked to pause, resume, restart, step N or turn KNOB=VALUE, and nothing else."};
+      "Unknown command; expected pause, resume, restart, step N or turn KNOB=VALUE."};
 }
 
 }  // namespace

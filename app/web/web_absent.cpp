@@ -8,8 +8,7 @@ class WebServer::Parts {};
 driver::Result<std::unique_ptr<WebServer>> WebServer::listen(session::RunAttachment&,
                                                              std::uint16_t) {
   return driver::Error{
-      "This thimble was built without Boost, by which pages are served; install libboost-dev and "
-      "build it again."};
+      "Built without Boost, which the web server requires; install libboost-dev and rebuild."};
 }
 
 WebServer::WebServer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}

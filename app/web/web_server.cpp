@@ -49,7 +49,7 @@ class WebServer::Parts {
   /// Starts to listen.
   driver::Result<void> begin(std::uint16_t port) {
     const auto listens = driver::listen_on_loopback(
-        acceptor_, port, "Choose another one (--port), or none: then a free one is taken.");
+        acceptor_, port, "Choose another one with --port, or omit it to use any free port.");
     if (!listens) return listens.error();
     port_ = *listens;
     accept();
@@ -154,17 +154,19 @@ class WebServer::Parts {
     if (!wrong.empty()) return refuse(visitor, http::status::forbidden, wrong);
     if (live) {
       if (pages() < kPagesMost) return visitor.open();
-      return refuse(visitor, http::status::service_unavailable, "Too many pages look on already.");
+      return refuse(visitor, http::status::service_unavailable,
+                    "Too many pages are connected already.");
     }
     if (!asks && request.method() != http::verb::get && request.method() != http::verb::head) {
-      return refuse(visitor, http::status::method_not_allowed, "Pages are looked at by GET.");
+      return refuse(visitor, http::status::method_not_allowed,
+                    "Only GET and HEAD requests are supported.");
     }
     if (!feed_) return wait(visitor);
     if (asks) {
       const std::string_view run = view_of(request["X-Thimble-Run"]);
       if (!run.empty() && run != feed_->run()) {
         return refuse(visitor, http::status::conflict,
-                      "This page shows a run that is over. Load the page again.");
+                      "The run of this page is over. Reload the page.");
       }
       return steer(visitor, request.body());
     }

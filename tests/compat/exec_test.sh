@@ -54,7 +54,7 @@ expect_own 0 '^touched$' awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /
 # A program that hangs is named, and its force is removed.
 expect_words 0 'hangs HDAPI vintage_phantom 20 ms' run "$clients/hangs"
 expect 0 '^Stalls +hangs .* [1-9]' run "$clients/hangs"
-expect 0 'left with zero force' run "$clients/hangs" and_leaves
+expect 0 'accepted zero force' run "$clients/hangs" and_leaves
 
 # Without `thimble exec`, and other errors.
 expect 2 'hdInitDevice.*`thimble exec' \

@@ -269,7 +269,7 @@ def test_ticks_of_a_run_in_real_time_can_be_read():
 
 def test_run_in_real_time_refuses_laws_and_steps():
     core = thimble._core
-    with pytest.raises(thimble.Error, match="virtual time alone"):
+    with pytest.raises(thimble.Error, match="requires virtual time"):
         core.Run("box", real_time=True, law=lambda tick: None)
     with pytest.raises(thimble.Error, match="cannot be stepped"):
         core.Run("box", real_time=True).step()

@@ -234,5 +234,5 @@ def test_several_arms_are_stepped_together_and_recorded_each(tmp_path):
     assert right.info["arm_in_scene"] == "right"
     with pytest.raises(thimble.Error, match="one arm"):
         thimble.Stepper("two_hands").step(hand=(0, 0, 0))
-    with pytest.raises(thimble.Error, match="for one arm"):
+    with pytest.raises(thimble.Error, match="supports one arm"):
         thimble.run("two_hands", law=lambda tick: None)

@@ -118,7 +118,7 @@ TEST_F(MixedArms, ASimulatedHandBesideARealOneBeginsWithTheForces) {
   EXPECT_EQ(session.setup().device_name(0), "sim");
   EXPECT_EQ(session.setup().device_name(1), "board_of_right");
   EXPECT_TRUE(session::agree_to_forces(session, true, terminal_, kNobodyStops));
-  EXPECT_NE(told_.find("board_of_right is about to get forces"), std::string::npos) << told_;
+  EXPECT_NE(told_.find("board_of_right is about to apply forces"), std::string::npos) << told_;
   ASSERT_TRUE(session.open_arm());
   EXPECT_EQ(session.device(0).stage(), driver::DeviceStage::kIdle);
   EXPECT_EQ(session.device(1).stage(), driver::DeviceStage::kIdle);
@@ -275,7 +275,7 @@ TEST_F(MixedArms, NamesMustBeThoseOfTheScene) {
   make_real("middle");
   const auto unknown = prepared();
   ASSERT_FALSE(unknown);
-  EXPECT_NE(unknown.error().message.find("none is called \"middle\": left, right."),
+  EXPECT_NE(unknown.error().message.find("none is named \"middle\". Choose one of: left, right."),
             std::string::npos)
       << unknown.error().message;
   const auto one = session::Session::prepare(kSource / "app/scenes/box.yaml", options_);

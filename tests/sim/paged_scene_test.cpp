@@ -100,7 +100,7 @@ TEST(PagedScene, IsTouchedOnTheWallClockWithALoaderOfItsOwn) {
     loaded = session.setup().objects().paging()->loads > 0;
     session::RunFigures report;
     report.paging = session.figures().paging;
-    EXPECT_NE(session::summary(report).find("read from the disk"), std::string::npos);
+    EXPECT_NE(session::summary(report).find("read from disk"), std::string::npos);
   }
   EXPECT_TRUE(loaded);
 }

@@ -293,12 +293,13 @@ TEST(TwoHands, AreReplayedOnlyIfAllOfOneRunAreThere) {
     const auto replays = session::replay_together(given);
     return replays ? std::string("replayed") : replays.error().message;
   };
-  EXPECT_NE(refusal({recordings[0]}).find("no recording of the arm \"right\""), std::string::npos)
+  EXPECT_NE(refusal({recordings[0]}).find("the recording of the arm \"right\" is missing"),
+            std::string::npos)
       << refusal({recordings[0]});
   EXPECT_NE(refusal({recordings[0], recordings[0]}).find("\"right\""), std::string::npos);
   EXPECT_EQ(refusal({recordings[1], recordings[0]}), "replayed") << "in any order";
   recordings[1].ticks.pop_back();
-  EXPECT_NE(refusal(recordings).find("not of one run"), std::string::npos);
+  EXPECT_NE(refusal(recordings).find("not from one run"), std::string::npos);
   // One hand alone is not what was felt.
   EXPECT_FALSE(session::replay(recordings[0]));
 }
@@ -316,7 +317,7 @@ TEST(TwoHands, AreRefusedWithASentenceWhereOneArmIsMeant) {
   EXPECT_EQ(refusal(options), "opened");
   session::SessionOptions other = options;
   other.hand_by_mouse = true;
-  EXPECT_NE(refusal(other).find("leave --hand away"), std::string::npos);
+  EXPECT_NE(refusal(other).find("--hand mouse supports one arm only"), std::string::npos);
   other = options;
   other.arm_file = "touch";
   EXPECT_NE(refusal(other).find("in place of all"), std::string::npos);

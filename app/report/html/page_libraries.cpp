@@ -68,9 +68,7 @@ driver::Result<std::vector<PageLibrary>> read_page_libraries() {
   }
   if (!missing.empty()) {
     return driver::Error{
-        "a page in the browser needs other people's libraries; install them with: "
-        "apt install" +
-        missing};
+        "the report page requires third-party libraries; install them with: apt install" + missing};
   }
   return libraries;
 }

@@ -115,7 +115,7 @@ std::vector<PageMark> drain(session::SpscRing<TickEvent>& ring) {
 void tell_of_lost(std::uint64_t lost, std::vector<PageMark>& marks) {
   if (lost == 0 || marks.empty()) return;
   marks.push_back({marks.back().end_ns, marks.back().end_ns, PageMark::Kind::kWarning,
-                   fmt::format("{} more events found no room on this page.", lost)});
+                   fmt::format("{} more events are not shown on this page.", lost)});
 }
 
 // Counters that recordings do not contain; always zero.
@@ -155,8 +155,9 @@ class GateTimes {
   PageMark mark() const {
     return {
         begin_ns_, newest_ns_, PageMark::Kind::kGate,
-        fmt::format("The force sent was not the one asked for, {} tick{} within {:.3f} s.", count_,
-                    count_ == 1 ? "" : "s", 1e-9 * static_cast<double>(newest_ns_ - begin_ns_))};
+        fmt::format("The sent force differed from the requested force, {} tick{} within {:.3f} s.",
+                    count_, count_ == 1 ? "" : "s",
+                    1e-9 * static_cast<double>(newest_ns_ - begin_ns_))};
   }
 
  private:

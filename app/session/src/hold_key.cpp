@@ -26,7 +26,7 @@ driver::Result<driver::HoldToRun> hold_named(const std::string& name) {
     hold.buttons = static_cast<std::uint16_t>(1U << (button - 1));
     return hold;
   }
-  return driver::Error{"What is held to run is button, button2 to button16, or key; found \"" +
+  return driver::Error{"The enabling input must be button, button2 to button16, or key; found \"" +
                        name + "\"."};
 }
 
@@ -34,14 +34,14 @@ driver::Result<void> HoldKey::check() {
   termios now{};
   if (isatty(STDIN_FILENO) != 0 && tcgetattr(STDIN_FILENO, &now) == 0) return {};
   return driver::Error{
-      "--hold-to-run key needs a terminal, for the space bar is held there; hold a button of the "
-      "arm instead: --hold-to-run button."};
+      "--hold-to-run key requires a terminal to read the space bar. Use a button of the arm "
+      "instead: --hold-to-run button."};
 }
 
 HoldKey::HoldKey(Session& session) : session_(session) {
   tcgetattr(STDIN_FILENO, &before_);
   termios keys = before_;
-  // Ctrl-C and Ctrl-Z stay what they are.
+  // Ctrl-C and Ctrl-Z keep their effect.
   keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   keys.c_cc[VMIN] = 1;
   keys.c_cc[VTIME] = 0;
@@ -73,7 +73,7 @@ void HoldKey::read_terminal(HeldKey& key) {
   }
   const std::string_view keys(text, static_cast<std::size_t>(count));
   if (keys.find('\n') != std::string_view::npos) enter_.store(true);
-  // All bytes of one read count as one press: pasted text holds nothing.
+  // All bytes of one read count as one press, so that pasted text does not count as a held key.
   if (keys.find(' ') != std::string_view::npos) key.press(session_.setup().clock().now_ns());
 }
 

@@ -17,8 +17,8 @@ namespace thimble::session {
 class Session;
 
 /// Returns the enabling input with the given name. Names are "button" or "button1" to "button16"
-/// for a button of the arm, "key" for the space bar of the terminal or a viewer, and empty for
-/// none. The error lists the names.
+/// for a button of the arm, and "key" for the space bar of the terminal or a viewer. An empty name
+/// means none. The error lists the names.
 THIMBLE_EXPORT driver::Result<driver::HoldToRun> hold_named(const std::string& name);
 
 /// Detects whether the space bar is held at a terminal, which reports only presses: a held key

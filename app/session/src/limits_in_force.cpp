@@ -33,11 +33,11 @@ std::string limits_in_force(const Setup& setup, std::size_t arm) {
   const auto ms = [](std::int64_t ns) { return 1e-6 * static_cast<double>(ns); };
   const auto& walls = settings.walls;
   return fmt::format(
-      "Limits in force: {:g} N, {:g} m/s, {}, rise {:g} N/s, soft start {:g} s and {:g} s after a "
-      "gap, "
-      "gap of {:g} ms, stall fault at {:g} ms, silence fault at {:g} ms, energy stage {}, force "
-      "held without counts {:g} s, walls of {:g} N/m from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) "
-      "mm with the fault {:g} mm behind them, enabling input: {}, feel check: {}.",
+      "Active limits: {:g} N, {:g} m/s, {}, rise {:g} N/s, soft start {:g} s and {:g} s after a "
+      "stall, stall at {:g} ms, stall fault at {:g} ms, silence fault at {:g} ms, energy stage {}, "
+      "force held without new counts for at most {:g} s, walls of {:g} N/m from ({:g}, {:g}, {:g}) "
+      "to ({:g}, {:g}, {:g}) mm with a fault {:g} mm behind them, enabling input: {}, feel check: "
+      "{}.",
       limits.force_max, limits.speed_max, power_in_words(limits), limits.rise_max,
       limits.soft_start, limits.reopen, ms(limits.stall_ns), ms(limits.watchdog_ns),
       ms(settings.silence_limit_ns),

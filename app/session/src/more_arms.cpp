@@ -11,7 +11,7 @@ LoggedRun logged_run(const Setup& setup, std::size_t arm) {
   const std::string& name = setup.arm_name(arm);
   LoggedRun run;
   run.name = name.empty() ? scene.name : scene.name + ", " + name;
-  run.what = fmt::format("{} ({}) feels {} at {:g} Hz in {} time", setup.arm_file(arm).name,
+  run.what = fmt::format("{} ({}) runs {} at {:g} Hz in {} time", setup.arm_file(arm).name,
                          setup.device_name(arm), scene.name, scene.rate,
                          setup.real_time() ? "real" : "virtual");
   run.limits = limits_in_force(setup, arm);
@@ -71,7 +71,7 @@ void MoreArms::take_all_forces() noexcept {
     driver::Device& device = setup_.device(i);
     if (device.fault() != driver::Fault::kNone) continue;
     device.trip(driver::Fault::kOtherArm);
-    device.deactivate();  // its force of this tick may stand already
+    device.deactivate();  // Its force of this tick may already have been sent.
   }
 }
 

@@ -11,10 +11,10 @@
 namespace thimble::session {
 namespace {
 
-/// Reads all arms for an instant, idle as they are: while one was waited for, the others' reports
-/// grew old, and simulated arms have time to make up for.
+/// Reads all idle arms for a short time. While the program waited for one arm, the reports of the
+/// others became old, and simulated arms fell behind in time.
 void catch_up(const Setup& setup) {
-  constexpr int kTicks = 50;  // chosen: the longest start of a board's reports
+  constexpr int kTicks = 50;  // chosen: the longest time until a board sends reports
   driver::Clock& clock = setup.clock();
   for (int tick = 0; tick < kTicks; ++tick) {
     for (std::size_t i = 0; i < setup.arms(); ++i) {
@@ -36,16 +36,16 @@ bool agree_to_forces(const Session& session, bool agreed, const Terminal& termin
     const driver::FoundArm& arm = *setup.real_arm(i);
     const bool at_home = !setup.homed() && setup.start_pose(i).has_home();
     terminal.tell(
-        fmt::format("{} {} is about to get forces. Keep clear of it, hold its grip{}, keep its "
-                    "switch at hand.",
+        fmt::format("{} {} is about to apply forces. Keep clear of it, hold its grip{}, keep its "
+                    "power switch within reach.",
                     arm.arm, arm.name(), at_home ? " in the home pose" : ""));
   }
   if (agreed) return true;
   if (!terminal.there) {
-    terminal.tell("thimble: Nobody is at the terminal to agree; say so with --yes.");
+    terminal.tell("thimble: There is no terminal to confirm; pass --yes to agree.");
     return false;
   }
-  terminal.ask("Press Enter to begin, Ctrl-C to leave.");
+  terminal.ask("Press Enter to start, Ctrl-C to quit.");
   while (!stop.load()) {
     const EnterKey key = terminal.key();
     if (key != EnterKey::kNothing) return key == EnterKey::kPressed;

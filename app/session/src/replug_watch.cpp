@@ -15,8 +15,8 @@ using driver::LinkState;
 
 constexpr int kStepsBetweenSearches = 5;  // half a second; chosen
 
-/// Returns where the tip must be. The counters of a simulated arm never restart, and no person
-/// could put it into its home pose.
+/// Returns the start pose of an arm. A simulated arm needs no home pose: its counters never
+/// restart, and the user cannot move it there.
 StartPose place_of(const Setup& setup, std::size_t arm) {
   if (setup.real_arm(arm)) return setup.start_pose(arm);
   return {setup.arm_file(arm).workspace, std::nullopt};
@@ -40,7 +40,7 @@ void ReplugWatch::step() {
   if (!snapshot_.load(record)) return;
   if (record.fault == driver::Fault::kNone) {
     fault_reported_ = gone_ = returned_ = home_asked_ = false;
-    terminal_.key();  // an earlier Enter must not count for a later fault
+    terminal_.key();  // Discards an earlier Enter, which must not count for a later fault.
     return;
   }
   if (!fault_reported_) {
@@ -49,9 +49,10 @@ void ReplugWatch::step() {
                    std::string(describe(record.fault)));
     const bool home_asked_next = record.home_needed && place_.has_home();
     if (record.link != LinkState::kLost && !home_asked_next) {
-      terminal_.tell("Press Enter to let forces through again.");
+      terminal_.tell("Press Enter to enable forces again.");
     }
-    if (record.fault == driver::Fault::kTransportLost) gone_ = true;  // as the fault reports
+    if (record.fault == driver::Fault::kTransportLost)
+      gone_ = true;  // the message of the fault says so already
     terminal_.key();
   }
   follow_link(record);
@@ -61,7 +62,9 @@ void ReplugWatch::step() {
 void ReplugWatch::follow_link(const driver::TickRecord& record) {
   if (record.link == LinkState::kLost) {
     if (!gone_) {
-      terminal_.tell((returned_ ? "The arm is gone again. " : "The arm is gone. ") + plug_in());
+      terminal_.tell(
+          (returned_ ? "The arm was disconnected again. " : "The arm was disconnected. ") +
+          plug_in());
     }
     gone_ = true;
     search();
@@ -72,17 +75,17 @@ void ReplugWatch::follow_link(const driver::TickRecord& record) {
     gone_ = false;
     returned_ = home_asked_ = true;
     terminal_.tell(place_.has_home()
-                       ? "The arm is back. Its counters restarted at zero in the pose in which it "
-                         "was plugged in, which must have been its home pose. Put it into its home "
-                         "pose and press Enter to let forces through."
-                       : "The arm is back and has found its zero again. Hold its grip in the "
-                         "workspace and press Enter to let forces through.");
+                       ? "The arm is connected again. Its counters started at zero in the pose in "
+                         "which it was plugged in, which must have been its home pose. Move it to "
+                         "its home pose and press Enter to enable forces."
+                       : "The arm is connected again and has found its zero. Hold its grip in the "
+                         "workspace and press Enter to enable forces.");
     terminal_.key();
   } else if (record.home_needed && !home_asked_ && place_.has_home()) {
     home_asked_ = true;
     terminal_.tell(
-        "The arm was silent or its position jumped, so its board may have restarted and count from "
-        "another pose. Put it into its home pose and press Enter to let forces through.");
+        "The arm was silent or its position jumped. Its board may have restarted, so its counters "
+        "may be wrong. Move it to its home pose and press Enter to enable forces.");
     terminal_.key();
   }
 }
@@ -96,7 +99,7 @@ void ReplugWatch::search() {
   pause_ = kStepsBetweenSearches;
   const auto found = ways_.find(arm_);
   if (!found) return;
-  // First: a vendor's library has one arm for all links.
+  // Closed first, because a vendor's library can open its arm only once.
   device_.close_lost_link();
   auto link = ways_.open(*found);
   if (!link) return;  // it may still be starting up; the next search tries again
@@ -105,12 +108,12 @@ void ReplugWatch::search() {
     return;
   }
   arm_ = *found;
-  scene::logger().info("{} is back on the bus: a new link to it is offered to the loop.",
-                       arm_.name());
+  scene::logger().info("{} is connected again: its new link is passed to the loop.", arm_.name());
 }
 
 void ReplugWatch::let_through(const driver::TickRecord& record) {
-  if (record.link == LinkState::kLost) return terminal_.tell("The arm is gone. " + plug_in());
+  if (record.link == LinkState::kLost)
+    return terminal_.tell("The arm is disconnected. " + plug_in());
   if (record.link == LinkState::kSilent) {
     return terminal_.tell(
         "The arm is silent, so it gets no force. Check its power; if it stays silent, unplug it. " +
@@ -135,12 +138,13 @@ ReplugWatch replug_watch_of(Session& session, std::size_t arm, Terminal terminal
   const auto open = [&setup, arm](const driver::FoundArm& found) {
     return scene::open_link(found, setup.arm_file(arm), setup.firmware(), setup.clock());
   };
-  return {setup.device(arm),
-          session.newest(arm),
-          place_of(setup, arm),
-          setup.real_arm(arm).value_or(driver::FoundArm{}),  // one that is simulated is not pulled
-          {find, open},
-          terminal_of(setup, arm, std::move(terminal))};
+  return {
+      setup.device(arm),
+      session.newest(arm),
+      place_of(setup, arm),
+      setup.real_arm(arm).value_or(driver::FoundArm{}),  // a simulated arm is never disconnected
+      {find, open},
+      terminal_of(setup, arm, std::move(terminal))};
 }
 
 ReplugWatches::ReplugWatches(Session& session, Terminal terminal) : terminal_(std::move(terminal)) {

@@ -20,7 +20,7 @@ class Session;
 /// Monitors a real arm outside of the servo loop. It prints when and why the force is off, and
 /// finds a disconnected arm again by its name, whatever the fault was. It enables forces only when
 /// the user presses Enter and the tip is at the start pose. After a disconnection or a restart of
-/// its board, the counters of an arm start at zero, so it must be in its home pose
+/// its board, the counters of an arm start at zero. So it must be in its home pose
 /// (Device::home_needed). Real-time: never from the servo thread.
 class ReplugWatch {
  public:

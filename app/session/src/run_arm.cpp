@@ -18,7 +18,7 @@ driver::Result<RunArm> choose_run_arm(const std::string& device,
   if (!chosen) return chosen.error();
   arm.real = std::move(chosen).value();
   if (!arm.real) {
-    arm.told.push_back("No arm is plugged in: the simulated one is used.");
+    arm.told.push_back("No arm is connected: the simulated arm is used.");
     const std::string left = plugged_in ? scene::boards_left_out(*plugged_in) : "";
     if (!left.empty()) arm.told.push_back(left);
     return arm;
@@ -47,12 +47,14 @@ driver::Result<RunArms> choose_run_arms(const std::vector<std::string>& devices,
     arms.told = arms.one.told;
     return arms;
   }
-  std::map<std::string, std::string> taken;  // board, and the arm of the scene that has it
+  // Arm of the scene to which each board is assigned.
+  std::map<std::string, std::string> taken;
   for (const std::string& device : devices) {
     const std::size_t equals = device.find('=');
     if (equals == std::string::npos || equals == 0) {
       return driver::Error{"--device " + device +
-                           ": of several say which arm of the scene each is: NAME=" + device + "."};
+                           ": with several arms, give the scene's name of each: NAME=" + device +
+                           "."};
     }
     const std::string name = device.substr(0, equals);
     if (arms.several.contains(name)) {
@@ -70,8 +72,8 @@ driver::Result<RunArms> choose_run_arms(const std::vector<std::string>& devices,
     const auto [other, is_new] = taken.emplace(one->real->name(), name);
     if (!is_new) {
       return driver::Error{"The arms \"" + other->second + "\" and \"" + name +
-                           "\" would both be " + one->real->name() +
-                           "; name another for one of them (thimble devices)."};
+                           "\" are both assigned to " + one->real->name() +
+                           "; choose another device for one of them (see thimble devices)."};
     }
     arms.several.emplace(name, RealArmUse{.arm = *one->real, .terms = *one->terms});
   }

@@ -28,8 +28,8 @@ std::string HeatWarning::look(const driver::TickRecord& record) {
   if (given_ || !(heat >= driver::HeatGuard::kWarning)) return {};
   given_ = true;
   return fmt::format(
-      "A motor is at {:.0f} % of the heat it bears; the force is lowered until it cools. Press "
-      "less hard or rest.",
+      "A motor is at {:.0f} % of its heat limit; the force is reduced until it cools. Press less "
+      "hard or rest.",
       100 * heat);
 }
 
@@ -40,7 +40,7 @@ void keep_black_boxes(Session& session, bool run_is_over) {
     return;
   }
   for (const auto& file : *kept) {
-    scene::logger().warn("the last seconds before the fault are in {}", file.string());
+    scene::logger().warn("the last seconds before the fault are saved in {}", file.string());
   }
 }
 
@@ -61,9 +61,9 @@ void RunAttendance::warn_of_carried() {
     withdrawn_[arm] = now;
     const std::string& arm_name = session_.arm_name(arm);
     scene::logger().warn(
-        "{}Gravity compensation is not trusted: the tip moves along its force, so it is switched "
-        "off until the tip rests. If no hand moved it, correct gravity_compensation of the arm "
-        "file: see `thimble identify`.",
+        "{}Gravity compensation is switched off until the tip rests, because the tip moves along "
+        "its force. If no hand moved it, correct gravity_compensation in the arm file: see "
+        "`thimble identify`.",
         arm_name.empty() ? "" : arm_name + ": ");
   }
 }

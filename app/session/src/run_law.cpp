@@ -10,7 +10,7 @@ driver::ForceLaw RunLaw::law() noexcept {
   return caller_ ? *caller_ : scene_.law();
 }
 
-// Flattened: nearly every tick goes through the objects, which are inlined here.
+// Flattened, because nearly every tick only calls the objects, which are inlined here.
 [[gnu::flatten]] driver::ForceCommand RunLaw::operator()(
     const driver::DeviceState& state) noexcept {
   driver::ForceCommand command = in_fault()      ? no_force(state)
@@ -25,7 +25,8 @@ driver::ForceCommand RunLaw::changed_force(const driver::DeviceState& state) noe
   return caller_ ? (*caller_)(state) : scene_(state);
 }
 
-/// Returns the force of an arm in fault. A pause that it leads holds for the other arms as well.
+/// Returns no force, for an arm in fault. Requests are still processed, because its pause applies
+/// to the other arms too.
 driver::ForceCommand RunLaw::no_force(const driver::DeviceState& state) noexcept {
   scene_.take_requests(state);
   return {};

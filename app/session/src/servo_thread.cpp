@@ -44,9 +44,9 @@ driver::ServoEnd ServoThread::join() {
 driver::Result<void> check_real_time(const driver::RealTimeGrant& grant, bool allowed) {
   if (grant.fifo || allowed) return {};
   return driver::Error{
-      "A real arm needs real-time priority: without it any other program can hold up the loop "
+      "A real arm requires real-time priority: without it any other program can delay the loop "
       "while a motor pulls. " +
-      grant.advice + " Or say --no-real-time and take what comes."};
+      grant.advice + " To run without it at your own risk, pass --no-real-time."};
 }
 
 }  // namespace thimble::session

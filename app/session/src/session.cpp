@@ -32,7 +32,7 @@ bool dents(const scene::SceneObject& object) {
 
 }  // namespace
 
-/// The parts of a session: what is run, the loop over it, and the observers of its ticks.
+/// Parts of a session: configuration, loop, and observers of the ticks.
 struct Session::Parts {
   explicit Parts(std::unique_ptr<Setup> prepared)
       : setup(std::move(prepared)),
@@ -52,16 +52,16 @@ struct Session::Parts {
 
   std::unique_ptr<Setup> setup;
   RunRecords records;
-  std::unique_ptr<PageServer> pages;  // in virtual time, if objects lie on the disk
+  std::unique_ptr<PageServer> pages;  // set in virtual time if an object is paged from disk
   std::unique_ptr<SharedRun> shared;
-  std::unique_ptr<RunSharing> sharing;   // if it is shared, as is control
-  std::unique_ptr<LiveControl> control;  // what viewers ask for
-  std::unique_ptr<HeldKnobs> knobs;      // that who holds the session turns
-  bool log = false;                      // what happens in the run goes into the log
-  std::unique_ptr<EventLog> event_log;   // once the arm is open, if so
-  RunLaw law;                            // of the first arm
+  std::unique_ptr<RunSharing> sharing;   // set if the run is shared; also `control`
+  std::unique_ptr<LiveControl> control;  // requests of viewers
+  std::unique_ptr<HeldKnobs> knobs;      // changed by the caller
+  bool log = false;                      // true to log the events of the run
+  std::unique_ptr<EventLog> event_log;   // created once the arm is open, if `log`
+  RunLaw law;                            // law of the first arm
   RunLoop loop;
-  MoreArms more_arms;  // after the first
+  MoreArms more_arms;  // arms after the first
 };
 
 void Session::Parts::add_records() {
@@ -92,7 +92,7 @@ void Session::Parts::add_knobs() {
 
 driver::Result<void> Session::Parts::share(const SessionOptions& options, SharedRun* before) {
   if (setup->keep() == Keep::kNewest) {
-    return driver::Error{"A session that keeps its newest tick alone cannot be watched."};
+    return driver::Error{"A session that keeps only its newest tick cannot have viewers."};
   }
   auto own = std::make_unique<LiveControl>(setup->scene(), setup->objects().touch(),
                                            setup->simulation(), setup->real_time());
@@ -165,7 +165,7 @@ driver::Result<std::unique_ptr<Session>> Session::prepare(const std::filesystem:
   if (options.share || options.share_out) {
     const auto shared = session->parts_->share(options);
     if (!shared && !options.share_if_possible) return shared.error();
-    if (!shared) scene::logger().warn("nobody can watch: {}", shared.error().message);
+    if (!shared) scene::logger().warn("viewers cannot attach: {}", shared.error().message);
   }
   return session;
 }
@@ -212,8 +212,8 @@ driver::Result<void> Session::activate() {
 driver::Result<void> Session::set_law(driver::ForceLaw law) {
   if (parts_->setup->real_time()) {
     return driver::Error{
-        "A force law of one's own runs in virtual time alone; in real time nothing may wait for "
-        "it. For that write it in C++ (app/examples/04_own_effect.cpp)."};
+        "A custom force law requires virtual time, because the loop may not wait for it in real "
+        "time. For real time, write it in C++ (app/examples/04_own_effect.cpp)."};
   }
   return set_servo_law(law);
 }
@@ -221,11 +221,12 @@ driver::Result<void> Session::set_law(driver::ForceLaw law) {
 driver::Result<void> Session::set_servo_law(driver::ForceLaw law) {
   if (arms() > 1) {
     return driver::Error{fmt::format(
-        "A force law of one's own is for one arm, and the scene has {}; take a scene of one.",
+        "A custom force law supports one arm, and the scene has {}; use a scene with one arm.",
         arms())};
   }
   if (parts_->loop.begun()) {
-    return driver::Error{"The run has begun with another force law; begin a new one."};
+    return driver::Error{
+        "The run has started; set the force law of a new run before its first tick."};
   }
   parts_->law.set_caller(law);
   return {};
@@ -237,7 +238,8 @@ driver::ForceLaw Session::own_law() noexcept {
 
 driver::Result<void> Session::add_observer(TickObserver& observer, std::size_t arm) {
   if (parts_->loop.begun()) {
-    return driver::Error{"The run has begun; add the observer to a new one before its first tick."};
+    return driver::Error{
+        "The run has started; add the observer to a new run before its first tick."};
   }
   (arm == 0 ? parts_->loop : parts_->more_arms.run(arm).loop).add(observer);
   return {};
@@ -269,9 +271,10 @@ std::vector<Knob> Session::knobs() const {
 
 driver::Result<void> Session::turn_knob(const std::string& name, double value) {
   if (parts_->knobs) return parts_->knobs->turn(name, value);
-  return driver::Error{arms() > 1 ? "Knobs are turned where the scene has one arm; this one has " +
-                                        std::to_string(arms()) + "."
-                                  : "The session was opened without knobs."};
+  return driver::Error{arms() > 1
+                           ? "Knobs require a scene with one arm; this scene has " +
+                                 std::to_string(arms()) + "."
+                           : "The session was opened without knobs (SessionOptions::knobs)."};
 }
 
 const scene::Scene& Session::scene() const noexcept {
@@ -329,7 +332,7 @@ const RunStatistics& Session::statistics() const noexcept {
 RunFigures Session::figures(const driver::RealTimeGrant& grant, std::size_t arm) const {
   const RunLoop& loop = arm == 0 ? parts_->loop : parts_->more_arms.run(arm).loop;
   auto end = loop.end().value_or(driver::ServoEnd::kStopped);
-  // The loop that comes to its end first stops the others.
+  // The loop that ends first stops the others.
   if (parts_->more_arms.end() == driver::ServoEnd::kDone) end = driver::ServoEnd::kDone;
   RunFigures figures = figures_of(*parts_->setup, arm, parts_->records_of(arm), end, grant);
   figures.carry_withdrawn = carry_withdrawn(arm);
@@ -357,12 +360,12 @@ std::optional<render::TriangleMesh> Session::deepest_dent() const {
 }
 
 driver::Result<void> Session::begin_recording(const std::filesystem::path& path, bool overwrite) {
-  constexpr double kLongest = 86400;  // s, of a run without an end; chosen
+  constexpr double kLongest = 86400;  // s, for a run of unknown duration; chosen
   const Setup& setup = *parts_->setup;
   const auto ticks_most =
       setup.ticks() > 0 ? setup.ticks()
                         : static_cast<std::uint64_t>(std::ceil(kLongest * setup.scene().rate));
-  // All files before the first is begun. A single one is checked where it is opened.
+  // Checks all files before the first recording starts. A single file is checked when it is opened.
   for (std::size_t arm = 0; arms() > 1 && arm < arms(); ++arm) {
     const auto file = file_of_arm(path, arm_name(arm));
     const auto place = output::resolve_output(file);
@@ -407,7 +410,8 @@ driver::Result<std::vector<std::filesystem::path>> Session::keep_black_boxes(boo
   std::vector<std::filesystem::path> files;
   for (std::size_t arm = 0; arm < arms(); ++arm) {
     KeptTicks* kept = parts_->records_of(arm).kept.get();
-    // The servo fills one that is not full; it may be full for one arm and not for another.
+    // The servo still writes to a black box that is not full. It may be full for only some of the
+    // arms.
     if (kept == nullptr || !(run_is_over || kept->black_box.full())) continue;
     const auto ticks = kept->black_box.release();
     if (ticks.empty()) continue;

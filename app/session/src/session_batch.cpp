@@ -8,15 +8,15 @@ namespace thimble::session {
 namespace {
 
 driver::Result<void> check(std::size_t count, const SessionOptions& options) {
-  if (count == 0) return driver::Error{"A batch has one run or more."};
+  if (count == 0) return driver::Error{"A batch requires at least one run."};
   if (options.clock != ClockKind::kVirtual || options.own_clock || options.real_arm ||
       !options.real_arms.empty()) {
-    return driver::Error{"The runs of a batch are in virtual time, each on a clock of its own."};
+    return driver::Error{"A batch requires virtual time, the built-in clock and simulated arms."};
   }
   if (options.share || options.share_out || !options.record.empty()) {
     return driver::Error{
-        "The runs of a batch are neither watched nor recorded; open a session for that, by the "
-        "seed of the run."};
+        "A batch cannot have viewers or recordings; open a session with the seed of the run "
+        "instead."};
   }
   return {};
 }

@@ -33,7 +33,7 @@ bool any_real_in(const SessionOptions& options) {
 driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::path& scene,
                                                       const SessionOptions& options) {
   if (options.real_arm && !options.terms) {
-    return driver::Error{"A real arm is used on terms only (terms_for)."};
+    return driver::Error{"A real arm requires `terms` (scene::terms_for)."};
   }
   auto found = scene::find_scene(scene.string());
   if (!found) return found.error();
@@ -66,7 +66,8 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
                                      setup->plan_.scene_file.string(), ScenePoses::kMost)};
   }
   if (auto simulated = setup->simulate_arms(); !simulated) return simulated.error();
-  if (!options.meshes) setup->plan_.meshes->drop_unused();  // the path, which the arm has
+  if (!options.meshes)
+    setup->plan_.meshes->drop_unused();  // the hand's path, of which the arm has a copy
   if (setup->plan_.real_time) setup->objects_->start_loaders();
   return setup;
 }
@@ -74,7 +75,7 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
 driver::Result<std::unique_ptr<Setup>> Setup::prepare_like(const Setup& other, std::uint64_t seed) {
   if (other.plan_.real_time || other.plan_.own_clock) {
     return driver::Error{
-        "A session like another is in virtual time, on a clock of its own, as that one must be."};
+        "Session::open_like requires a session with virtual time and the built-in clock."};
   }
   std::unique_ptr<Setup> setup(new Setup);
   setup->plan_ = other.plan_;
@@ -102,8 +103,8 @@ driver::Result<void> Setup::read(const SessionOptions& options) {
   const bool real = any_real_in(options);
   const auto quality = scene::quality_named(options.quality);
   if (!quality) {
-    return driver::Error{fmt::format("There is no quality \"{}\"; choose one of {}.",
-                                     options.quality, fmt::join(scene::kQualityNames, ", "))};
+    return driver::Error{fmt::format("Unknown quality \"{}\"; choose one of {}.", options.quality,
+                                     fmt::join(scene::kQualityNames, ", "))};
   }
   auto scene = scene::load_scene(
       plan_.scene_file,
@@ -124,8 +125,7 @@ driver::Result<void> Setup::read(const SessionOptions& options) {
   plan_.seed = options.seed.value_or(plan_.scene->seed);
   plan_.period_ns = std::llround(1e9 / plan_.scene->rate);
   const double duration = options.duration.value_or(plan_.scene->duration);
-  // Led by a person, or by another program, it goes on until he has enough, unless he says how
-  // long.
+  // A run whose hand is moved by a viewer or a program has no end unless a duration is given.
   if ((!hand_led() && !options.endless) || options.duration) {
     plan_.ticks = static_cast<std::uint64_t>(
         std::ceil(duration * 1e9 / static_cast<double>(plan_.period_ns)));
@@ -136,16 +136,15 @@ driver::Result<void> Setup::read(const SessionOptions& options) {
 driver::Result<void> Setup::check_several(const SessionOptions& options) const {
   if (arms() == 1 && options.real_arms.empty()) return {};
   if (arms() == 1) {
-    return driver::Error{
-        fmt::format("{}: the scene has one arm; name it without {}=: --device WHICH.",
-                    plan_.scene_file.string(), options.real_arms.begin()->first)};
+    return driver::Error{fmt::format("{}: the scene has one arm; remove {}= from --device.",
+                                     plan_.scene_file.string(), options.real_arms.begin()->first)};
   }
   const auto refuse = [this](const char* what) {
     return driver::Error{
         fmt::format("{}: the scene has {} arms; {}", plan_.scene_file.string(), arms(), what)};
   };
   if (options.real_arm) {
-    return refuse(fmt::format("say which one is meant: --device {}=WHICH.", arm_name(0)).c_str());
+    return refuse(fmt::format("name the arm: --device {}=WHICH.", arm_name(0)).c_str());
   }
   std::string names = arm_name(0);
   for (std::size_t i = 1; i < arms(); ++i) names += ", " + arm_name(i);
@@ -153,14 +152,14 @@ driver::Result<void> Setup::check_several(const SessionOptions& options) const {
     const std::string& name = real.first;
     const auto same = [&name](const scene::SceneArm& arm) { return arm.name == name; };
     if (std::none_of(plan_.scene->arms.begin(), plan_.scene->arms.end(), same)) {
-      return refuse(fmt::format("none is called \"{}\": {}.", name, names).c_str());
+      return refuse(fmt::format("none is named \"{}\". Choose one of: {}.", name, names).c_str());
     }
   }
   if (options.hand_by_mouse) {
-    return refuse("a viewer leads one hand; leave --hand away.");
+    return refuse("--hand mouse supports one arm only; remove it.");
   }
   if (options.hand_by_program) {
-    return refuse("a program leads one hand; leave --hand topic away.");
+    return refuse("--hand topic supports one arm only; remove it.");
   }
   return {};
 }
@@ -201,11 +200,11 @@ driver::Result<void> Setup::use_among_others(std::size_t i, const RealArmUse& us
   arm.real = use.arm;
   arm.open_link = use.open_link;
   arm.feel_check = use.terms.feel_check;
-  // Where it stands comes from the scene, how it counts from its home pose from its file alone.
+  // The arm's place comes from the scene. Its counts at the home pose come only from its file.
   const auto uncalibrated = scene::load_arm(use.terms.arm.path);
   if (!uncalibrated) return driver::Error{of_arm(uncalibrated.error().message)};
   arm.start_pose = StartPose::of(in_scene.place.put(*uncalibrated), use.arm.kind);
-  // What the scene says of limits is kept as with one arm, for this one.
+  // Applies the limits named in the scene to this arm, as for a scene with one arm.
   scene::Scene alone;
   alone.arms.front().own_arm_file = in_scene.arm_file;
   alone.energy = plan_.scene->energy;
@@ -215,7 +214,7 @@ driver::Result<void> Setup::use_among_others(std::size_t i, const RealArmUse& us
   for (const std::string& sentence : *told) plan_.told.push_back(of_arm(sentence));
   in_scene.arm = in_scene.place.put(alone.arms.front().arm);
   in_scene.arm_file = alone.arms.front().arm_file;
-  arm.energy.reset();  // the arm has it now
+  arm.energy.reset();  // now in the arm's own settings
   return {};
 }
 
@@ -241,7 +240,7 @@ driver::Result<void> Setup::simulate_arms() {
       return in_file(plan_.scene_file, reach.error());
     }
     start = route.front().second;
-    // A hand that is led waits where the planned path begins.
+    // A hand moved by a viewer or a program waits at the start of the planned path.
     auto simulation = scene::ArmSimulation::make(
         arm, hand_led() ? scene::HandRoute{route.front()} : route, plan_.firmware, seed);
     if (!simulation) return in_file(arm_file, simulation.error());
@@ -249,7 +248,7 @@ driver::Result<void> Setup::simulate_arms() {
   };
   for (std::size_t i = 0; i < arms(); ++i) {
     if (arms_[i].real) continue;
-    // A seed of its own each, so that two hands do not tremble as one.
+    // Each arm has a different seed, so that the tremors of two hands differ.
     Eigen::Vector3d start;
     const scene::SceneArm& one = plan_.scene->arms[i];
     auto simulation = simulate(one.arm, one.arm_file, one.hand, one.name, plan_.seed + i, start);
@@ -267,14 +266,14 @@ std::string Setup::find_start_inside(std::size_t i, const Eigen::Vector3d& p_WT)
   inside.clear();
   const render::SceneTouch& touch = objects_->touch(i);
   for (std::size_t object = 0; object < touch.size(); ++object) {
-    // What the hand holds is around the tip from the first tick.
+    // An object held by the hand contains the tip from the first tick on.
     const auto& motion = plan_.scene->objects[object].body.motion;
     if (motion && motion->grip) continue;
     if (touch.object(object).inside(p_WT)) inside.push_back(plan_.scene->objects[object].name);
   }
   if (inside.empty()) return {};
   return fmt::format(
-      "{}{} starts inside {}: no surface is felt there until the tip has been outside.",
+      "{}{} starts inside {}: its surface is felt only once the tip has been outside.",
       arms() == 1 ? "The tip" : "The tip of the arm ", arms() == 1 ? "" : "\"" + arm_name(i) + "\"",
       fmt::join(inside, ", "));
 }
@@ -301,7 +300,8 @@ driver::Result<void> Setup::open(std::size_t i) {
   }
   driver::DeviceSettings settings =
       scene::device_settings(arm_file(i), plan_.scene->rate, arm.energy);
-  // A simulated hand that is led has no tremor, and its arm sends no old positions.
+  // A hand moved by a viewer or a program has no tremor, so unchanged counts are no sign of old
+  // reports.
   constexpr double kAnyTime = 1e9;  // s
   if (hand_led()) settings.motion.hold_most = kAnyTime;
   settings.hold = plan_.hold;
@@ -321,8 +321,8 @@ driver::Result<void> Setup::open(std::size_t i) {
 }
 
 driver::Result<void> Setup::open_arm() {
-  // The clock starts last, so that the arms' time begins with the session's. A real arm knows only
-  // the time of the world.
+  // The clock starts last, so that the time of the arms starts with that of the session. A real arm
+  // requires real time.
   if (!clock_ && plan_.real_time) clock_ = std::make_unique<driver::WallClock>();
   if (!clock_ && plan_.paced) {
     auto clock = std::make_shared<SpeedClock>();
@@ -337,7 +337,7 @@ driver::Result<void> Setup::open_arm() {
     }
   }
   if (!any_real()) return activate();
-  // A simulated hand beside a real one begins its path with the forces.
+  // If another arm is real, a simulated hand starts its path when forces are enabled.
   for (const ArmOfRun& arm : arms_) {
     if (arm.simulation) arm.simulation->hold(true);
   }

@@ -9,33 +9,32 @@
 namespace thimble::session {
 namespace {
 
-constexpr std::int64_t kPeriod_ns = 1'000'000;              // as often as an arm expects a message
+constexpr std::int64_t kPeriod_ns = 1'000'000;              // period at which arms expect messages
 constexpr std::int64_t kSleptThrough_ns = 10 * kPeriod_ns;  // as in a servo loop
-constexpr int kTicksBetweenLooks = 20;                      // at the terminal; chosen
+constexpr int kTicksBetweenLooks = 20;  // between two checks of the terminal; chosen
 
 }  // namespace
 
 StartPose StartPose::of(const scene::ArmFile& file, driver::ArmKind kind) {
   if (kind == driver::ArmKind::kFalcon) return {file.workspace, std::nullopt};
   const auto arm = driver::make_arm(kind, file.model);
-  // An arm behind its vendor's software is calibrated by that.
+  // The vendor's software calibrates its arm.
   if (arm == nullptr) return {file.workspace, std::nullopt};
   return {file.workspace, file.p_WB + file.R_WB * arm->pose({}).p_BT};
 }
 
 std::string StartPose::trouble(const Eigen::Vector3d& p_WT, bool at_home) const {
-  constexpr const char* kMend =
-      "switch it off, put it into its home pose, and switch it on again there";
+  constexpr const char* kMend = "switch it off, move it to its home pose, and switch it on there";
   if (!p_WT.allFinite()) {
-    return fmt::format("The arm reports no position that can be: {}.", kMend);
+    return fmt::format("The arm reports an invalid position: {}.", kMend);
   }
   if (p_WHome_) {
     const double distance = (p_WT - *p_WHome_).norm();
     if (distance <= kHomeMargin) return {};
     if (at_home) {
       return fmt::format(
-          "The arm reports its tip {:.0f} mm away from its home pose. Put it into its home pose. "
-          "If it stands there already, its counters began elsewhere: {}.",
+          "The arm reports its tip {:.0f} mm away from its home pose. Move it to its home pose. If "
+          "it is already there, its counters are wrong: {}.",
           1e3 * distance, kMend);
     }
   }
@@ -43,9 +42,9 @@ std::string StartPose::trouble(const Eigen::Vector3d& p_WT, bool at_home) const 
   const double outside = (p_WT - nearest).norm();
   if (!(outside <= kWorkspaceMargin)) {
     return fmt::format(
-        "The arm reports its tip {:.0f} mm outside of the workspace that its arm file names. Bring "
-        "it inside. If it is inside already, its counters are wrong: {}.",
-        1e3 * outside, has_home() ? kMend : "start the program again, which homes it anew");
+        "The arm reports its tip {:.0f} mm outside of the workspace in its arm file. Move it "
+        "inside. If it is already inside, its counters are wrong: {}.",
+        1e3 * outside, has_home() ? kMend : "restart the program, which homes it again");
   }
   return {};
 }
@@ -53,7 +52,7 @@ std::string StartPose::trouble(const Eigen::Vector3d& p_WT, bool at_home) const 
 driver::Result<bool> wait_for_start_pose(driver::Device& device, driver::Clock& clock,
                                          const StartPose& place, bool at_home,
                                          const Terminal& terminal, const std::atomic<bool>& stop) {
-  // The board may restart while it is waited for.
+  // The board may restart while the program waits.
   const auto trouble_now = [&] {
     std::string found = place.trouble(device.state().p_WT, at_home || device.home_needed());
     if (found.empty()) device.confirm_home();
@@ -61,7 +60,7 @@ driver::Result<bool> wait_for_start_pose(driver::Device& device, driver::Clock& 
   };
   std::string trouble = trouble_now();
   if (trouble.empty()) return true;
-  if (!terminal.there) return driver::Error{trouble + " Then start again."};
+  if (!terminal.there) return driver::Error{trouble + " Then restart the program."};
   const auto ask = [&] { terminal.tell(trouble + " Hold it there and press Enter."); };
   ask();
   const std::int64_t asleep_ns = clock.asleep_ns();
@@ -79,7 +78,7 @@ driver::Result<bool> wait_for_start_pose(driver::Device& device, driver::Clock& 
     }
     if (tick % kTicksBetweenLooks != 0) continue;
     const EnterKey key = terminal.key();
-    if (key == EnterKey::kClosed) return driver::Error{trouble + " Nobody is at the terminal."};
+    if (key == EnterKey::kClosed) return driver::Error{trouble + " The terminal was closed."};
     if (key != EnterKey::kPressed) continue;
     trouble = trouble_now();
     if (trouble.empty()) return true;

@@ -35,10 +35,10 @@ class StartPose {
             const std::optional<Eigen::Vector3d>& p_WHome) noexcept
       : workspace_(workspace), p_WHome_(p_WHome) {}
 
-  /// Returns the start pose for an arm of this kind, from its file without a calibration, which
-  /// changes the counts at the home pose but not its position. A Falcon and an arm behind a
-  /// vendor's software have no home pose here, because they find their own. Real-time: never from
-  /// the servo thread.
+  /// Returns the start pose for an arm of this kind, from its file without a calibration. A
+  /// calibration changes the counts at the home pose but not its position. A Falcon and an arm
+  /// behind a vendor's software have no home pose here, because they find their own. Real-time:
+  /// never from the servo thread.
   static StartPose of(const scene::ArmFile& file, driver::ArmKind kind);
 
   /// Returns whether the arm has a home pose to start in. Real-time: safe.

@@ -1,6 +1,6 @@
-// Where the objects that move were: `t` and, for each, x y z and a quaternion w x y z.
+// Poses of the moving objects: `t` and, for each object, x y z and a quaternion w x y z.
 const bodies = {t: numbers('bodies.t') || new Float64Array(0), poses: numbers('bodies.poses') || new Float32Array(0)};
-// Returns what puts the objects that move where they are at a time.
+// Returns a function that moves the objects to their poses at a time.
 function makeBodies(objects) {
   const turn = (poses, at) => new THREE.Quaternion(poses[at + 4], poses[at + 5], poses[at + 6], poses[at + 3]);
   return t => {
@@ -36,11 +36,11 @@ function dentsOf(get) {
 const dents = {all: dentsOf(numbers)};
 dents.times = dents.all.map(dent => dent.t);
 
-// Objects that dent: returns what draws the dent of a time, in place of the triangles it stands for.
+// Returns a function that draws the dent at a time, instead of the triangles that it replaces.
 function makeDents(objects) {
   const patch = new THREE.Mesh(new THREE.BufferGeometry(), undefined);
   let shown = null;
-  let away = null;  // the triangles that are not drawn: [positions, numbers, what they were]
+  let away = null;  // the hidden triangles: [positions, numbers, previous corners]
 
   function putBack() {
     if (!away) return;
@@ -74,7 +74,7 @@ function makeDents(objects) {
   };
 }
 
-// How objects were shaped for good, step by step, oldest first: which vertices and triangles are others.
+// Permanent deformation of objects, step by step, oldest first: the changed vertices and triangles.
 function shapesOf(get) {
   const times = get('shapes.t');
   if (!times) return [];
@@ -90,7 +90,7 @@ function shapesOf(get) {
     return step;
   });
 }
-// `base`: of each object, its mesh before all steps, where that is another than it was first.
+// `base`: mesh of each object before all steps, if it differs from the initial one.
 const shapes = {all: shapesOf(numbers), base: new Map()};
 shapes.before = number => {
   const base = shapes.base.get(number);
@@ -110,16 +110,16 @@ shapes.apply = (mesh, step) => {
   step.vertices.forEach((v, i) => mesh.vertices.set(step.places.subarray(3 * i, 3 * i + 3), 3 * v));
   step.triangles.forEach((n, i) => mesh.corners.set(step.corners.subarray(3 * i, 3 * i + 3), 3 * n));
 };
-// Makes a step part of what was before all others.
+// Merges a step into the base.
 shapes.fold = step => {
   const mesh = shapes.before(step.object);
   shapes.apply(mesh, step);
   shapes.base.set(step.object, mesh);
 };
 
-// Objects that are shaped for good: returns what gives each its mesh of a time.
+// Returns a function that gives each permanently deformed object its mesh at a time.
 function makeShapes(objects) {
-  const meshes = new Map();  // object: its mesh as it is drawn, and up to which step
+  const meshes = new Map();  // object: its drawn mesh, and the number of steps in it
   return t => {
     for (const number of new Set([...shapes.base.keys(), ...shapes.all.map(step => step.object)])) {
       const steps = shapes.all.filter(step => step.object === number);
@@ -128,7 +128,7 @@ function makeShapes(objects) {
       let mesh = meshes.get(number);
       if (mesh ? mesh.newest === newest : !newest && !shapes.base.has(number)) continue;
       let next = mesh && mesh.newest ? steps.indexOf(mesh.newest) + 1 : 0;
-      // Back in time: from the beginning on.
+      // Back in time: starts again from the base.
       if (!mesh || next === 0 || newest === null || steps.indexOf(newest) < next - 1) {
         next = 0;
         mesh = shapes.before(number);

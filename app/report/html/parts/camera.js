@@ -1,4 +1,4 @@
-// An eye that circles about a point. World: x towards the user, y to the right, z up.
+// Camera that orbits a point. World: x towards the user, y to the right, z up.
 function makeEye(canvas, changed) {
   const eye = {target: new THREE.Vector3(), yaw: 0.5, pitch: 0.42, distance: 0.3, home: null};
   const towards = () => new THREE.Vector3(Math.cos(eye.pitch) * Math.cos(eye.yaw),
@@ -12,7 +12,7 @@ function makeEye(canvas, changed) {
     camera.far = eye.distance * 100;
     camera.updateProjectionMatrix();
   };
-  // Looks at a box from the side that `side` points to, from above, so that all of it is seen.
+  // Shows a whole box from the side to which `side` points, from above.
   eye.frame = (box, camera, side) => {
     const flat = Math.hypot(side.x, side.y);
     if (flat > 0.2 * Math.abs(side.z)) {

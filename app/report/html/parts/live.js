@@ -1,6 +1,6 @@
-// The page of a run that goes on: what it is told is put behind what it has, and the oldest goes.
+// The page of a live run: appends the updates to its data and drops the oldest.
 
-// A column that grows at its end; `array` is what all see of it.
+// Column that grows at its end; `array` is its current contents.
 class Column {
   constructor(type, width, most) {
     this.width = width;
@@ -25,7 +25,7 @@ class Column {
     this.rows += rows;
     this.drop(this.rows - this.most);
   }
-  // Forgets so many of the oldest rows.
+  // Drops the given number of oldest rows.
   drop(rows) {
     if (rows > 0) {
       this.first += rows;
@@ -38,7 +38,7 @@ class Column {
 function makeLive(changed) {
   const live = {state: 'connecting', notice: '', lost: 0, lostHere: 0, figures: false, marks: false, updates: 0};
   const most = Math.floor(about.live.rows / arms.length);
-  const kPicturesMost = 4000;  // of bodies and arms: 30 a second, and some room
+  const kPicturesMost = 4000;  // poses of bodies and arms: 30 a second, with some margin
   const columns = arms.map(arm => {
     const own = {};
     for (const [name, width] of Object.entries(kColumns)) own[name] = new Column(arm[name].constructor, width, most);
@@ -65,7 +65,7 @@ function makeLive(changed) {
     const column = name => get('arm' + number + '.' + name);
     if (told.rows > 0) {
       for (const name of Object.keys(kColumns)) own[name].push(column(name));
-      // Of arms after the first it is told the newest tick alone: that is no period.
+      // Of arms after the first only the newest ticks are sent, so there are no periods.
       if (number > 0) own.period.array[own.period.array.length - 1] = NaN;
       const sent = column('sent');
       const force = Float32Array.from({length: told.rows}, (_, i) => lengthAt(sent, i));
@@ -116,7 +116,7 @@ function makeLive(changed) {
     ++live.updates;
   }
 
-  // What is older than the oldest tick goes, but for the state that it left.
+  // Drops everything older than the oldest tick, except the state at that time.
   function trim() {
     const first = columns[0].t.array[0];
     if (first === undefined) return;
@@ -136,7 +136,7 @@ function makeLive(changed) {
     for (const step of shapes.all.splice(0, steps < 0 ? 0 : steps)) shapes.fold(step);
   }
 
-  // Lets everybody see the columns as they are now.
+  // Publishes the current columns.
   function show() {
     arms.forEach((arm, number) => {
       for (const [name, column] of Object.entries(columns[number])) arm[name] = column.array;
@@ -159,7 +159,7 @@ function makeLive(changed) {
     for (let at = 0; at < buffer.byteLength;) {
       const [text, block] = [view.getUint32(at, true), view.getUint32(at + 4, true)];
       const update = JSON.parse(decoder.decode(new Uint8Array(buffer, at + 8, text)));
-      // Another run has the name by now: its ticks are not of this page's objects.
+      // Another run has this name now; its ticks do not belong to the objects of this page.
       if (update.run && update.run !== about.live.run) leaving = true;
       if (leaving) return location.reload();
       take(update, arraysOf(update.arrays, buffer, at + 8 + text));
@@ -179,7 +179,7 @@ function makeLive(changed) {
       if (event.code === 1000) {
         live.state = 'ended';
       } else {
-        // A run that has ended may be followed by the next one of its name.
+        // A run that has ended may be followed by another one of the same name.
         if (live.state !== 'ended') live.state = 'not connected';
         setTimeout(connect, 1000);
       }
@@ -190,14 +190,14 @@ function makeLive(changed) {
   return live;
 }
 
-// Says how it goes, in the head.
+// Shows the state of the run in the header.
 function showLive(live, following) {
   const box = document.getElementById('live');
   box.hidden = false;
   box.className = live.state === 'running' ? (following ? 'on' : 'held') : 'off';
-  const parts = [live.state === 'running' ? (following ? 'live' : 'held; the run goes on') : live.state];
+  const parts = [live.state === 'running' ? (following ? 'live' : 'held; the run continues') : live.state];
   if (live.recording && live.state === 'running') parts.push('recording to ' + live.recording);
-  if (live.lost > 0) parts.push(live.lost + ' ticks came too fast to be seen');
+  if (live.lost > 0) parts.push(live.lost + ' ticks were overwritten before they were read');
   if (live.lostHere > 0) parts.push(live.lostHere + ' ticks did not reach this page');
   const words = parts.join(', ');
   if (box.textContent !== words) box.textContent = words;

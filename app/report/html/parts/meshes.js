@@ -1,5 +1,5 @@
-// Returns a mesh with normals of its own at every corner: the mean of the triangles about the vertex
-// that turn away by less than the crease angle.
+// Returns a mesh with separate normals at every corner: the mean over the triangles at the vertex whose normals
+// differ by less than the crease angle.
 function meshGeometry(vertices, corners, crease) {
   const triangles = corners.length / 3;
   const flat = new Float32Array(3 * triangles);
@@ -17,7 +17,7 @@ function meshGeometry(vertices, corners, crease) {
       unit[3 * t + k] = n[k] / length;
     }
   }
-  // Which triangles meet at each vertex.
+  // Triangles at each vertex.
   const first = new Uint32Array(vertices.length / 3 + 1);
   for (const v of corners) ++first[v + 1];
   for (let v = 1; v < first.length; ++v) first[v] += first[v - 1];
@@ -50,8 +50,8 @@ function meshGeometry(vertices, corners, crease) {
   return geometry;
 }
 
-// Returns the path of an arm's tip, over its ticks from row `begin` to `end`, as a tube coloured by force;
-// where it touches, of its point on the surface. `times` says to which tick each ring of the tube belongs.
+// Returns the path of an arm's tip from row `begin` to `end` as a tube coloured by force; in contact, the path of
+// the proxy. `times` has the tick of each ring of the tube.
 function pathTube(arm, begin, end, step, radius) {
   const kSides = 6;
   const rows = [];
@@ -103,10 +103,10 @@ function pathTube(arm, begin, end, step, radius) {
   return {geometry, times: rows.map(i => arm.t[i]), perRing: 6 * kSides};
 }
 
-// The path of an arm: pieces of a tube, of which the last one grows while the run goes on and the oldest go
-// with their ticks. What is over is drawn solid, what is to come thin.
+// The path of an arm, in pieces of a tube. In a live run the last piece grows, and the oldest are dropped with their
+// ticks. The past is drawn solid, the future thin.
 function makePath(arm, step, radius) {
-  const kPiece = 1000;  // ticks, where the run goes on; of a run that is over there is one piece
+  const kPiece = 1000;  // ticks, in a live run; a finished run has one piece
   const solid = new THREE.MeshPhongMaterial({vertexColors: THREE.VertexColors, shininess: 10});
   const thin = new THREE.MeshPhongMaterial(
       {vertexColors: THREE.VertexColors, shininess: 10, transparent: true, opacity: 0.3, depthWrite: false});

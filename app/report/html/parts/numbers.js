@@ -1,12 +1,12 @@
 'use strict';
 
-// What the page tells (`about`), and its numbers: typed arrays over one block of bytes, by name.
+// Description of the run (`about`), and its numbers: typed arrays over one block of bytes, by name.
 const about = JSON.parse(document.getElementById('about').textContent);
 const kTypes = {
   f64: Float64Array, f32: Float32Array, u32: Uint32Array, u16: Uint16Array, i16: Int16Array,
   u8: Uint8Array
 };
-// Returns what gives arrays by name: `arrays` says where each lies, from `offset` of a buffer on.
+// Returns a function that returns arrays by name. `arrays` has their positions, from `offset` of a buffer on.
 function arraysOf(arrays, buffer, offset) {
   return name => {
     const array = arrays[name];
@@ -20,7 +20,7 @@ const numbers = (() => {
   return arraysOf(about.arrays, bytes.buffer, 0);
 })();
 
-// Returns the last place of a rising array that is not above `t`; 0 if all are.
+// Returns the last index of an increasing array whose value is not above `t`; 0 if there is none.
 function placeOf(times, t) {
   let low = 0;
   let high = times.length;
@@ -36,7 +36,7 @@ function lengthAt(array, i) {
   return Math.hypot(array[3 * i], array[3 * i + 1], array[3 * i + 2]);
 }
 
-// Returns the least of 1, 2, 5 times a power of ten that is not below a value.
+// Returns the smallest 1, 2 or 5 times a power of ten that is not below a value.
 function roundUp(value) {
   if (!(value > 0)) return 1;
   const power = Math.pow(10, Math.floor(Math.log10(value)));
@@ -44,12 +44,12 @@ function roundUp(value) {
   return 10 * power;
 }
 
-// The columns of an arm's ticks, with how many numbers a tick has in each.
+// Columns of an arm's ticks, with the number of values per tick.
 const kColumns = {
   t: 1, tick: 1, tip: 3, proxy: 3, sent: 3, asked: 1, depth: 1, period: 1, work: 1, speed: 1,
   object: 1, touching: 1
 };
-// The ticks of one arm, column by column.
+// Ticks of one arm, column by column.
 function armOf(number) {
   const arm = Object.assign({}, about.arms[number]);
   const column = name => numbers('arm' + number + '.' + name);
@@ -65,11 +65,11 @@ function armOf(number) {
   return arm;
 }
 const arms = about.arms.map((_, number) => armOf(number));
-// The time that the page shows, s; where the run goes on both ends do too.
+// Time range of the page, s; both ends move in a live run.
 const span = {begin: 0, end: Math.max(0.001, ...arms.map(arm => (arm.t.length ? arm.t[arm.t.length - 1] : 0)))};
 let forceScale = roundUp(Math.max(...arms.map(arm => arm.forceMost)));
 
-// Force as a colour: none is grey, then light to dark, apart for colour-blind eyes too.
+// Colour of a force: grey for none, then light to dark; distinguishable for colour-blind people.
 const kForceStops = [[0.98, 0.82, 0.30], [0.95, 0.56, 0.17], [0.84, 0.25, 0.05], [0.38, 0.03, 0.12]];
 function forceColour(force) {
   if (!(force > 1e-4)) return [0.60, 0.64, 0.69];

@@ -1,11 +1,11 @@
-// Time: plays, pauses, seeks, and tells stage, plots and strip.
+// Playback: plays, pauses and seeks, and updates stage, plots and strip.
 (() => {
-  // `fresh`: nobody has gone anywhere yet; `following`: of a run that goes on, the newest is shown.
+  // `fresh`: the user has not moved in time yet; `following`: shows the newest tick of a live run.
   const player = {t: 0, arm: 0, speed: 1, playing: false, fresh: true, following: Boolean(about.live)};
   const byId = id => document.getElementById(id);
   let stage, plots, strip, live, steer;
   const contactsOf = arms.map(() => null);
-  // When an arm touches; gaps shorter than 20 ms are closed, as the report does.
+  // Returns the intervals of contact; gaps shorter than 20 ms are closed, as in the report.
   player.contacts = () => {
     if (contactsOf[player.arm]) return contactsOf[player.arm];
     const arm = arms[player.arm];
@@ -20,7 +20,7 @@
     return contactsOf[player.arm] = found;
   };
   player.window = () => (plots ? plots.window : [span.begin, span.end]);
-  // How long a part the plots show of a run that goes on, s; who zooms chooses another.
+  // Width of the plots' window in a live run, s; zooming changes it.
   let shownLast = 10;
   let sliding = false;
   player.windowChanged = ([from, to]) => {
@@ -53,7 +53,7 @@
     showPlay();
     before = null;
   };
-  // Of a run that goes on: goes along with it, or stays where it is.
+  // In a live run: follows the newest tick, or stays at the current time.
   function follow(on) {
     player.following = on;
     if (on) {
@@ -65,7 +65,7 @@
   }
   player.now = () => follow(true);
 
-  // Goes by rows of the page: a tick, unless the run was longer than the page shows.
+  // Steps by rows of the page. A row is a tick, unless the run was longer than the page shows.
   player.step = rows => {
     const times = arms[player.arm].t;
     if (times.length === 0) return;
@@ -74,9 +74,9 @@
   };
 
   let before = null;
-  let slow = 0;  // when what takes long was drawn last
+  let slow = 0;  // time at which the slow parts were drawn last
   let grown = false;
-  // What has come of a run that goes on: the scene at once, plots and lists a few times a second.
+  // Shows the new ticks of a live run: the scene at once, plots and lists a few times a second.
   function showGrown(now) {
     grown = false;
     stage.grow();
@@ -143,7 +143,7 @@
     byId('title').textContent = about.title;
     byId('subtitle').textContent = about.subtitle;
     byId('subtitle').title = about.subtitle;
-    byId('program').textContent = 'Felt by ' + about.program + '.';
+    byId('program').textContent = 'Computed by ' + about.program + '.';
     for (const speed of [0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 4]) {
       const option = textIn(byId('speed'), 'option', speed + ' \u00d7');
       option.value = speed;
@@ -159,9 +159,9 @@
     stage = makeStage(byId('stage'));
     stage.resize();
     if (stage.shown) {
-      addChoice('ahead', 'path to come', true);
+      addChoice('ahead', 'future path', true);
       if (arms.some(arm => arm.barTimes && arm.barTimes.length > 0)) addChoice('arm', 'arm', false);
-      if (about.objects.some(object => object.left)) addChoice('left', 'as it was left', false);
+      if (about.objects.some(object => object.left)) addChoice('left', 'final shape', false);
       textIn(byId('stage-choices'), 'span', 'grid ' + +(1e3 * stage.cell).toPrecision(2) + ' mm').style.color = '#616e7c';
     }
     sliding = true;
@@ -205,12 +205,12 @@
       follow(true);
       grown = true;
     } else {
-      // Where the force is largest there is most to see.
+      // Starts at the largest force.
       const arm = arms[0];
       let most = 0;
       for (let i = 1; i < arm.t.length; ++i) if (arm.force[i] > arm.force[most]) most = i;
       player.seek(arm.t.length ? arm.t[most] : 0);
-      player.fresh = true;  // who plays it first sees it from its beginning
+      player.fresh = true;  // the first playback starts at the beginning
     }
     requestAnimationFrame(frame);
   }
@@ -219,7 +219,7 @@
     live = makeLive(() => {
       showLive(live, player.following);
       steer.show(live);
-      // What the scene is drawn around is known with the first tick.
+      // The extent of the scene is known with the first tick.
       if (!begun && arms[0].t.length > 0) begin();
       grown = begun;
     });
@@ -229,7 +229,7 @@
     begin();
   }
 
-  // For whoever drives the page by a script: what is shown, and how to go elsewhere.
+  // Interface for scripts that control the page.
   window.thimblePage = {
     get duration() { return span.end; },
     get begun() { return begun; },

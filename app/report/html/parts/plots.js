@@ -1,7 +1,7 @@
-// Plots of one arm over time, all with the same window; a click leads the player there.
+// Plots of one arm over time, all with the same window; a click moves the player to that time.
 const kPlots = [
   {title: 'Force', unit: 'N', channels: [
-    {name: about.replayed ? 'felt now' : 'asked for', colour: '#7b8794', on: true, of: (arm, i) => arm.asked[i]},
+    {name: about.replayed ? 'replayed' : 'requested', colour: '#7b8794', on: true, of: (arm, i) => arm.asked[i]},
     {name: about.replayed ? 'recorded' : 'sent', colour: '#d55e00', on: true, of: (arm, i) => arm.force[i]}]},
   {title: 'Depth', unit: 'mm', channels: [
     {name: 'depth', colour: '#0072b2', on: true, of: (arm, i) => 1e3 * arm.depth[i]}]},
@@ -11,8 +11,8 @@ const kPlots = [
   {title: 'Speed', unit: 'mm/s', channels: [
     {name: 'speed', colour: '#9a6b00', on: false, of: (arm, i) => 1e3 * arm.speed[i]}]}];
 
-// Returns the rows to draw between two times: as many as a screen shows, with all that is least and
-// most, and the first and the last of all, so that the axis knows its ends.
+// Returns the rows to draw between two times: as many as a screen shows, with every minimum and maximum. The first
+// and the last row of all are included, so that the axis has its full range.
 function rowsToDraw(arm, channels, begin, end) {
   const kMost = 1500;
   const rows = arm.t.length;
@@ -47,7 +47,7 @@ function makePlots(box, player) {
     return rowsToDraw(arm, channels, plots.window[0], plots.window[1])
         .map(i => [arm.t[i], ...channels.map(channel => channel.of(arm, i))]);
   };
-  // Contact as a ground, and what happened as lines.
+  // Draws contact as background, and events as lines.
   const underlay = (canvas, area, dygraph) => {
     const arm = arms[player.arm];
     canvas.fillStyle = '#eef3f8';
@@ -132,7 +132,7 @@ function makePlots(box, player) {
     });
   }
   const hint = document.createElement('span');
-  hint.textContent = 'click: go there; drag: zoom; shift-drag: move; double-click: all';
+  hint.textContent = 'click: go to time; drag: zoom; shift-drag: pan; double-click: show all';
   channelBox.append(hint);
 
   plots.layOut = () => {
@@ -142,7 +142,7 @@ function makePlots(box, player) {
       return !graph.box.hidden;
     });
     shown.forEach((graph, k) => {
-      const last = k + 1 === shown.length;  // the axis of time stands under the last alone
+      const last = k + 1 === shown.length;  // only the last plot has a time axis
       graph.box.classList.toggle('last', last);
       graph.dygraph.updateOptions({axes: {x: {drawAxis: last}}}, true);
       graph.dygraph.resize();
@@ -150,7 +150,7 @@ function makePlots(box, player) {
     setting = false;
     plots.refresh();
   };
-  // Says the values under the mouse, or where the player is.
+  // Shows the values under the mouse, or at the player's time.
   plots.tell = graph => {
     const arm = arms[player.arm];
     if (arm.t.length === 0) return;

@@ -1,11 +1,11 @@
-// What stands beside the scene: figures, marks, objects.
+// Panel next to the scene: figures, events, objects.
 const kWords = {
   ticks: 'Ticks', rate: 'Rate', period_p99_9: 'Period, 99.9 %', period_max: 'Period, longest',
-  touch_downs: 'Touch-downs', lost_contacts: 'Lost contacts', force_max: 'Force, most',
-  force_rms: 'Force touching, rms', depth_max: 'Depth, most', energy_to_hand: 'Energy to the hand',
+  touch_downs: 'Contacts', lost_contacts: 'Lost contacts', force_max: 'Force, maximum',
+  force_rms: 'Force in contact, RMS', depth_max: 'Depth, maximum', energy_to_hand: 'Energy to the hand',
   reports_missing: 'Reports missing', fault_ticks: 'Ticks in fault', ticks_missed: 'Ticks missed', current_at_exit: 'Current at the end',
   page_misses: 'Ticks missing a page', pages_damaged: 'Pages damaged', tick_time_p50: 'Computing, median',
-  tick_time_p99_9: 'Computing, 99.9 %', forces_differing: 'Forces not as recorded'
+  tick_time_p99_9: 'Computing, 99.9 %', forces_differing: 'Forces that differ from the recording'
 };
 
 function textIn(parent, tag, text, className) {
@@ -35,7 +35,7 @@ function showSide(player) {
   list.textContent = '';
   document.getElementById('no-marks').hidden =
       arm.marks.some(mark => mark.kind === 'fault' || mark.kind === 'gate' || mark.kind === 'warning');
-  // Of a run that goes on the newest stand first.
+  // In a live run the newest events come first.
   for (const mark of about.live ? arm.marks.slice().reverse() : arm.marks.slice(0, 500)) {
     const button = document.createElement('button');
     button.type = 'button';
@@ -57,9 +57,9 @@ function showObjects() {
     const spot = document.createElement('i');
     spot.style.background = objectColour(i);
     item.append(spot, object.name + ' ');
-    let words = object.kind === 'field' ? 'a field, not drawn'
-                : object.kind === 'paged' ? 'on the disk, not drawn'
-                : object.kind === 'shape' ? 'an exact shape' : object.triangles + ' triangles';
+    let words = object.kind === 'field' ? 'field, not drawn'
+                : object.kind === 'paged' ? 'paged from disk, not drawn'
+                : object.kind === 'shape' ? 'exact shape' : object.triangles + ' triangles';
     if (object.drawn < object.triangles) words += ', drawn with ' + object.drawn;
     if (object.moves) words += ', moves';
     textIn(item, 'span', words);
@@ -67,7 +67,7 @@ function showObjects() {
   });
 }
 
-// The values at one moment, over the scene.
+// Shows the values at one time, over the scene.
 function showReadout(player) {
   const arm = arms[player.arm];
   const box = document.getElementById('readout');

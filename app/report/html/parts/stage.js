@@ -1,11 +1,11 @@
-// The scene in three dimensions. Without WebGL a sentence stands in its place, and the rest goes on.
+// The scene in three dimensions. Without WebGL a message is shown instead, and the rest of the page works.
 function makeStage(box) {
   let renderer;
   try {
     renderer = new THREE.WebGLRenderer({antialias: true, alpha: true});
   } catch (error) {
     const note = document.getElementById('stage-note');
-    note.textContent = 'This browser draws no WebGL, so the scene is left out; plots and figures are below.';
+    note.textContent = 'This browser does not support WebGL, so the scene is not shown; plots and figures are below.';
     note.hidden = false;
     return {show() {}, draw() {}, resize() {}, drawn: 0};
   }
@@ -19,7 +19,7 @@ function makeStage(box) {
   const lamp = new THREE.DirectionalLight(0xffffff, 0.36);
   scene.add(lamp, lamp.target);
 
-  // Objects, as they are at first and as they were left.
+  // Objects, with their initial and final meshes.
   const bounds = new THREE.Box3();
   const objects = about.objects.map((object, i) => {
     const prefix = 'object' + i + '.';
@@ -48,7 +48,7 @@ function makeStage(box) {
   if (bounds.isEmpty()) bounds.expandByPoint(new THREE.Vector3());
   const size = Math.max(1e-3, bounds.getSize(new THREE.Vector3()).length());
 
-  // A grid of 10 mm (or a power of ten of it) under everything.
+  // A grid of 10 mm, or this times a power of ten, below the scene.
   const cell = Math.pow(10, Math.round(Math.log10(size / 15)));
   const cells = 2 * Math.ceil(0.55 * size / cell);
   const grid = new THREE.GridHelper(cells * cell, cells, 0xb3bcc6, 0xccd3da);
@@ -58,7 +58,7 @@ function makeStage(box) {
                     bounds.min.z - 0.002 * size);
   scene.add(grid);
 
-  // What is drawn of each arm.
+  // Drawn parts of each arm.
   const ball = new THREE.SphereBufferGeometry(1, 24, 16);
   const rod = new THREE.CylinderBufferGeometry(1, 1, 1, 12);
   const plain = colour => new THREE.MeshPhongMaterial({color: colour, shininess: 40});
@@ -78,7 +78,7 @@ function makeStage(box) {
     return {path, tip, proxy, shaft, head, bars};
   });
 
-  // Where the forces point on the whole: the touched side is looked at first.
+  // Returns the sum of all forces: the initial view is from the touched side.
   function touchedSide() {
     const sum = new THREE.Vector3();
     for (const arm of arms) {
@@ -141,7 +141,7 @@ function makeStage(box) {
   const showDents = makeDents(objects);
   const showShapes = makeShapes(objects);
   const eye = makeEye(renderer.domElement, () => { stage.dirty = true; });
-  // What has come of the run since: paths grow.
+  // Adds the new ticks of a live run to the paths.
   stage.grow = () => sides.forEach(side => side.path.grow());
   stage.show = t => {
     showShapes(t);

@@ -1,6 +1,6 @@
-// Asks a run that goes on to pause, to begin anew and to turn its knobs, as the window does, and shows how they stand.
+// Requests of the page to a live run: pause, restart and knobs, as in the window. Shows their state.
 
-// The unit that a value of this size is read in, and how many of it there are in the knob's own.
+// Returns the unit in which to show a value of this size, and its number per unit of the knob.
 function readUnit(unit, most) {
   if (unit === 'm' && most < 1e-3) return ['\u00b5m', 1e6];
   if (unit === 'm' && most < 1) return ['mm', 1e3];
@@ -10,7 +10,7 @@ function readUnit(unit, most) {
 
 function makeSteer() {
   const byId = id => document.getElementById(id);
-  const kPlaces = 1000;  // of a slider
+  const kPlaces = 1000;  // positions of a slider
   const token = new URLSearchParams(location.search).get('token');
   const steer = {};
   let answer = '';
@@ -25,7 +25,7 @@ function makeSteer() {
     byId('steer-note').textContent = answer;
   }
 
-  // A row of a knob: its name, its value, a slider and what sets it back.
+  // Creates the row of a knob: name, value, slider, and a button to reset it.
   function makeKnob(knob) {
     const row = document.createElement('div');
     row.className = 'knob';
@@ -39,11 +39,11 @@ function makeSteer() {
     row.append(slider, reset);
     reset.type = 'button';
     reset.textContent = 'reset';
-    reset.title = 'As in the scene';
+    reset.title = 'Reset to the value in the scene';
     byId('knobs').append(row);
 
     const [unit, size] = readUnit(knob.unit, Math.max(Math.abs(knob.least), Math.abs(knob.most)));
-    // What reaches over more than two powers of ten is turned by its logarithm, as in the window.
+    // A range of more than two powers of ten has a logarithmic slider, as in the window.
     const wide = knob.least > 0 && knob.most > 100 * knob.least;
     const at = place => {
       const share = place / kPlaces;
@@ -53,7 +53,7 @@ function makeSteer() {
     const placeOfValue = one => Math.round(kPlaces * (wide ? Math.log(one / knob.least) / Math.log(knob.most / knob.least)
                                                             : (one - knob.least) / (knob.most - knob.least)));
     const tell = one => { value.textContent = +(one * size).toPrecision(4) + (unit ? ' ' + unit : ''); };
-    // One request at a time: the newest wish waits for the answer to the one before.
+    // One request at a time: the newest value waits for the answer to the previous request.
     let [wish, asking] = [null, false];
     async function turn(one) {
       wish = one;
@@ -86,7 +86,7 @@ function makeSteer() {
   step.addEventListener('click', event => ask('step ' + (event.ctrlKey ? 100 : event.shiftKey ? 10 : 1)));
   restart.addEventListener('click', () => ask('restart'));
 
-  // Shows what the run tells of itself.
+  // Shows the state of the run.
   steer.show = live => {
     const goes = live.state === 'running' || live.state === 'paused';
     paused = live.state === 'paused';
@@ -94,9 +94,9 @@ function makeSteer() {
     if (pause.textContent !== words) pause.textContent = words;
     pause.disabled = !goes;
     step.disabled = !paused || about.live.no_step !== '';
-    step.title = about.live.no_step || (paused ? 'A tick; with shift 10, with ctrl 100' : 'Pause the run first.');
+    step.title = about.live.no_step || (paused ? '1 tick; with Shift 10, with Ctrl 100' : 'Pause the run first.');
     restart.disabled = !goes || about.live.no_restart !== '';
-    restart.title = about.live.no_restart || 'Begins the run anew, from its first tick';
+    restart.title = about.live.no_restart || 'Restarts the run from its first tick';
     knobs.forEach((knob, i) => { if (live.knobs) knob.show(live.knobs[i], !goes); });
     const note = answer || live.notice;
     if (byId('steer-note').textContent !== note) byId('steer-note').textContent = note;

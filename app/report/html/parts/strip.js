@@ -1,4 +1,4 @@
-// The timeline: force over the whole run, contact, marks, the window of the plots, and where it is.
+// The timeline: force over the whole run, contact, events, the window of the plots, and the current time.
 const kMarkColours = {fault: '#b3261e', warning: '#b7791f', gate: '#8e2a8b', note: '#9aa5b1'};
 
 function makeStrip(box, player) {
@@ -19,7 +19,7 @@ function makeStrip(box, player) {
     for (const [begin, end] of player.contacts()) {
       pen.fillRect(at(begin), 0, Math.max(1, at(end) - at(begin)), height);
     }
-    // A force stands until the next tick, which may be some columns on.
+    // A force lasts until the next tick, which may be several columns later.
     const most = new Float32Array(width);
     for (let i = 0; i < arm.t.length; ++i) {
       const next = i + 1 < arm.t.length ? arm.t[i + 1] : span.end;

@@ -9,7 +9,8 @@
 namespace thimble::session {
 namespace {
 
-constexpr std::chrono::milliseconds kBetweenLooks(50);  // chosen: soon enough for who reads along
+// Chosen: short enough for a user who follows the log.
+constexpr std::chrono::milliseconds kBetweenLooks(50);
 
 }  // namespace
 
@@ -34,15 +35,15 @@ EventLog::EventLog(LoggedRun run, const driver::Device& device)
 EventLog::~EventLog() {
   stop_.store(true);
   if (writer_.joinable()) writer_.join();
-  serve();  // before more comes, so that there is room
+  serve();  // Makes room for the events of `finish`.
   watch_.finish();
   serve();
   if (device_.zero_assured()) {
-    log_->info("The run is over; the arm took zero force.");
+    log_->info("The run is over; the arm accepted zero force.");
   } else {
     log_->warn(
-        "The run is over, and the arm has not taken zero force: its own watchdog must "
-        "switch it off. Keep clear of it.");
+        "The run is over, but the arm did not accept zero force: its watchdog must switch the "
+        "motors off. Keep clear of it.");
   }
 }
 
@@ -53,7 +54,7 @@ void EventLog::take(const driver::TickRecord& record) noexcept {
 
 void EventLog::serve() noexcept {
   try {
-    // An end that comes in two pieces takes two rounds.
+    // Two rounds, because events that wrap around the end of the ring are in two pieces.
     for (int piece = 0; piece < 2; ++piece) {
       const auto events = ring_.front();
       if (events.empty()) break;
@@ -62,10 +63,10 @@ void EventLog::serve() noexcept {
     }
     const std::uint64_t lost = watch_.lost();
     if (lost == lost_told_) return;
-    log_->warn("{} events came too quickly and are missing here.", lost - lost_told_);
+    log_->warn("{} events were lost because the log could not keep up.", lost - lost_told_);
     lost_told_ = lost;
   } catch (const std::exception&) {
-    // Out of memory: an event that cannot be told is no reason to end a touch.
+    // Out of memory: drops the events. An event that cannot be logged must not end the run.
     ring_.drop(ring_.front().size());
   }
 }

@@ -15,7 +15,7 @@ double wall_force_squared(const std::array<double, 3>& f_W) noexcept {
 }  // namespace
 
 std::uint64_t DeviceCounters::changes() const noexcept {
-  // Each of them only grows.
+  // All counts only increase, so their sum changes whenever one of them does.
   const ActivityCounts counts = DeviceCounters::activities();
   return std::accumulate(counts.begin(), counts.end(), DeviceCounters::wires_taken());
 }
@@ -65,7 +65,7 @@ void EventWatch::push(const TickEvent& event) noexcept {
   if (!ring_.push(event)) lost_.fetch_add(1, std::memory_order_relaxed);
 }
 
-// Nearly every tick is like the one before.
+// Returns whether nothing has changed since the last tick, as in nearly every tick.
 bool EventWatch::quiet(const driver::TickRecord& record) const noexcept {
   return counters_.changes() == changes_ && record.in_contact == touching_ &&
          record.stage == stage_ && record.fault == fault_ && record.link == link_ &&
@@ -135,7 +135,7 @@ void EventWatch::watch_stage(const driver::TickRecord& record) noexcept {
 
 void EventWatch::watch_activities(const driver::TickRecord& record) noexcept {
   ActivityCounts counts = counters_.activities();
-  // Ticks are due at whole periods; whoever is late skips some.
+  // Ticks are due at whole periods; a late loop skips some.
   constexpr auto kMissed = static_cast<std::size_t>(Activity::kMissedTicks);
   const std::int64_t periods = begun_ ? (record.due_ns - due_ns_) / period_ns_ : 1;
   counts[kMissed] = counts_[kMissed] + static_cast<std::uint64_t>(periods > 1 ? periods - 1 : 0);

@@ -17,62 +17,64 @@ using spdlog::level::level_enum;
 struct ActivityWords {
   level_enum level;
   const char* began;
-  const char* happened;  // what it did, of a number of times
+  const char* happened;  // Past tense; a count follows ("3 times").
 };
 
 // In the order of Activity.
 constexpr std::array<ActivityWords, kActivities> kWords{{
-    {spdlog::level::debug, "The limit of the force opens.", "The limit of the force was opening"},
-    {spdlog::level::info, "The force is cut to the arm's limit.",
-     "The force was cut to the arm's limit"},
-    {spdlog::level::debug, "The rise of the force is held back.",
-     "The rise of the force was held back"},
-    {spdlog::level::info, "The gate's energy stage damps.", "The gate's energy stage damped"},
-    {spdlog::level::info, "The gate's energy bound cuts the force.",
-     "The gate's energy bound cut the force"},
-    {spdlog::level::warn, "The force is lowered, for a motor is hot: press less hard or rest.",
-     "The force was lowered for a hot motor"},
+    {spdlog::level::debug, "The soft start limits the force.", "The soft start limited the force"},
+    {spdlog::level::info, "The force is limited to the arm's maximum.",
+     "The force was limited to the arm's maximum"},
+    {spdlog::level::debug, "The rise of the force is limited.",
+     "The rise of the force was limited"},
+    {spdlog::level::info, "The gate's energy stage adds damping.",
+     "The gate's energy stage added damping"},
+    {spdlog::level::info, "The gate's energy bound limits the force.",
+     "The gate's energy bound limited the force"},
+    {spdlog::level::warn, "The force is reduced because a motor is hot: press less hard or rest.",
+     "The force was reduced because of a hot motor"},
     {spdlog::level::warn,
-     "The loop stood still and the force opens anew: close other programs, or see thimble doctor.",
-     "The loop stood still"},
+     "The loop was blocked, so the force restarts softly: close other programs, or run thimble "
+     "doctor.",
+     "The loop was blocked"},
     {spdlog::level::debug, "Ticks are missed.", "Ticks were missed"},
-    {spdlog::level::warn, "Reports come that the driver does not know: check the arm's cable.",
-     "Reports were not known"},
-    {spdlog::level::warn, "A report was dropped for a jump that no hand makes: check the encoders.",
-     "Reports were dropped for a jump"},
-    {spdlog::level::warn, "The arm takes no message: check its cable and power.",
-     "Messages were not taken"},
-    {spdlog::level::warn, "The force is lowered: its mean power is at the limit of the gate.",
-     "The force was lowered for its mean power"},
+    {spdlog::level::warn, "Invalid reports arrive: check the arm's cable.",
+     "Invalid reports arrived"},
+    {spdlog::level::warn, "A report was dropped because of an impossible jump: check the encoders.",
+     "Reports were dropped because of a jump"},
+    {spdlog::level::warn, "The arm accepts no messages: check its cable and power.",
+     "Messages were not accepted"},
+    {spdlog::level::warn, "The force is reduced: its mean power is at the gate's limit.",
+     "The force was reduced because of its mean power"},
     {spdlog::level::warn,
-     "The program's force oscillates and grows, so it is lowered: its spring or damper is too "
+     "The program's force oscillates and grows, so it is reduced: its spring or damper is too "
      "stiff for this arm and loop.",
-     "The program's force was lowered after an oscillation"},
+     "The program's force was reduced after an oscillation"},
     {spdlog::level::warn, "A wall of the workspace pushes the tip back.",
      "A wall of the workspace pushed"},
 }};
 
-/// Returns what a stage is called, and where it is set or what helps.
+/// Returns the name of a stage, with its key in the files or the remedy.
 const char* stage_words(Activity activity) noexcept {
   switch (activity) {
     case Activity::kSoftStart:
-      return "The soft start (soft_start, or reopen after a gap, of the arm file)";
+      return "The soft start (soft_start in the arm file; after a stall: reopen)";
     case Activity::kForceCut:
-      return "The arm's limit of force (force_max of the arm file)";
+      return "The force limit (force_max in the arm file)";
     case Activity::kRiseCut:
-      return "The limit of the force's rise (rise_max of the arm file)";
+      return "The rise limit (rise_max in the arm file)";
     case Activity::kDamped:
-      return "The energy stage (energy: passivity; more energy went out than any storage explains)";
+      return "The energy stage (energy: passivity; the arm gave more energy than was stored)";
     case Activity::kBounded:
-      return "The energy bound (energy: bounding of the arm file or scene)";
+      return "The energy bound (energy: bounding in the arm file or scene)";
     case Activity::kHeat:
       return "The heat guard (a motor is hot: press less hard or rest)";
     case Activity::kPower:
-      return "The limit of power (power_max of the arm file)";
+      return "The power limit (power_max in the arm file)";
     case Activity::kCalmed:
-      return "The guard against oscillations (the program's spring or damper is too stiff)";
+      return "The oscillation guard (the program's spring or damper is too stiff)";
     case Activity::kWall:
-      return "The wall of the workspace (workspace of the arm file)";
+      return "The workspace wall (workspace in the arm file)";
     default:
       break;
   }
@@ -83,7 +85,8 @@ const ActivityWords& words_for(Activity activity) noexcept {
   return kWords[static_cast<std::size_t>(activity)];
 }
 
-/// Returns which wall pushes, or pushed and how strongly.
+/// Returns the message for a workspace wall: that it pushes, or how often and how strongly it
+/// pushed.
 std::string wall_sentence(const TickEvent& event) {
   const Eigen::Vector3d f_W(event.f_wall_W.data());
   if (event.kind == EventKind::kActivityBegan) {
@@ -99,7 +102,7 @@ std::string wall_sentence(const TickEvent& event) {
 std::string sentence(const TickEvent& event, std::span<const std::string> objects) {
   switch (event.kind) {
     case EventKind::kActivated:
-      return "Forces are let through.";
+      return "Forces are enabled.";
     case EventKind::kDeactivated:
       return "Forces are off.";
     case EventKind::kWaiting:
@@ -107,7 +110,7 @@ std::string sentence(const TickEvent& event, std::span<const std::string> object
     case EventKind::kFault:
       return fmt::format("Force is off ({}). {}", name(event.fault), describe(event.fault));
     case EventKind::kWireTaken:
-      return "A new wire to the arm was taken; its force stays off until the user lets it through.";
+      return "A new link to the arm is used; its force stays off until the user enables it.";
     case EventKind::kActivityBegan:
       if (event.activity == Activity::kWall) return wall_sentence(event);
       return words_for(event.activity).began;
@@ -134,11 +137,11 @@ std::string sentence(const TickEvent& event, std::span<const std::string> object
         case driver::LinkState::kSilent:
           return "The arm is silent: check its cable and power.";
         case driver::LinkState::kLost:
-          return "The arm is gone from the wire: plug it in again.";
+          return "The arm was disconnected: plug it in again.";
       }
       break;
   }
-  return "Something unknown happened.";
+  return "Unknown event.";
 }
 
 }  // namespace
@@ -160,7 +163,7 @@ level_enum level_of(const TickEvent& event) noexcept {
     case EventKind::kActivityBegan:
       return words_for(event.activity).level;
     case EventKind::kActivityEnded:
-      // Once it is over there is nothing to look at.
+      // No action is needed once the activity has ended.
       return std::min(words_for(event.activity).level, spdlog::level::info);
     case EventKind::kTouchBegan:
     case EventKind::kTouchEnded:

@@ -14,7 +14,7 @@ constexpr std::size_t kChecks = 20'000;  // [chosen: about 0.1 s on a mesh of 5,
 std::uint64_t count_lost_contacts(std::span<const driver::TickRecord> rows,
                                   const render::SceneTouch& touch) {
   const std::size_t stride = std::max<std::size_t>(1, rows.size() / kChecks);
-  // Where bodies were in each tick only they know, and count for themselves.
+  // Records do not contain the poses of bodies, so bodies count their lost contacts themselves.
   std::uint64_t lost = touch.lost_contacts();
   bool was_outside = false, in_lost_stretch = false, in_contact_before = false;
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -53,147 +53,140 @@ std::string summary(const RunFigures& report) {
   const RunStatistics& run = report.statistics;
   const double period_us = report.rate_asked > 0 ? 1e6 / report.rate_asked : 0;
   std::string s;
-  s += fmt::format(
-      "The {} hand reached for {} for {:.1f} s with the {} {} and touched it {} time{},\n",
-      report.simulated_arm ? "simulated" : "user's", report.object, run.duration(),
-      report.simulated_arm ? "simulated arm" : "arm", report.arm, run.contacts(),
-      run.contacts() == 1 ? "" : "s");
-  s += fmt::format("{:.1f} s in all. ", run.contact_time());
+  s += fmt::format("The {} hand explored {} for {:.1f} s with the {} {}: {} contact{},\n",
+                   report.simulated_arm ? "simulated" : "user's", report.object, run.duration(),
+                   report.simulated_arm ? "simulated arm" : "arm", report.arm, run.contacts(),
+                   run.contacts() == 1 ? "" : "s");
+  s += fmt::format("{:.1f} s in total. ", run.contact_time());
   s += report.lost_contacts == 0
-           ? "No contact was lost on the way.\n"
-           : fmt::format("{} time{} the tip was inside without a force: a lost contact.\n",
+           ? "No contact was lost.\n"
+           : fmt::format("The tip was inside without a force {} time{}: lost contacts.\n",
                          report.lost_contacts, report.lost_contacts == 1 ? "" : "s");
   if (!report.inside_at_start.empty()) {
-    s += fmt::format("Start     the tip was inside {}, so no surface was felt there at first.\n",
-                     fmt::join(report.inside_at_start, ", "));
+    s += fmt::format(
+        "Start     the tip started inside {}; its surface is felt once the tip has been outside.\n",
+        fmt::join(report.inside_at_start, ", "));
   }
-  s +=
-      fmt::format("Force     {:.2f} N at most (limit {:.2f} N), {:.2f} N on average (rms) {}.\n",
-                  run.force_max(), report.force_limit,
-                  run.contacts() > 0 ? run.force_rms() : run.force_rms_of_run(),
-                  run.contacts() > 0 ? "while touching" : "over the run, which touched no surface");
+  s += fmt::format("Force     {:.2f} N maximum (limit {:.2f} N), {:.2f} N RMS {}.\n",
+                   run.force_max(), report.force_limit,
+                   run.contacts() > 0 ? run.force_rms() : run.force_rms_of_run(),
+                   run.contacts() > 0 ? "in contact" : "over the run, which had no contact");
   s += report.triangles == 0
-           ? fmt::format("Depth     {:.2f} mm at most; no triangles, all shapes are exact.\n",
+           ? fmt::format("Depth     {:.2f} mm maximum; no triangles, all shapes are exact.\n",
                          1e3 * run.depth_max())
            : fmt::format(
-                 "Depth     {:.2f} mm at most; {} triangle{} crossed in one tick at most, of {}.\n",
+                 "Depth     {:.2f} mm maximum; at most {} triangle{} crossed per tick, of {}.\n",
                  1e3 * run.depth_max(), unsigned{run.hops_max()}, run.hops_max() == 1 ? "" : "s",
                  report.triangles);
   const double energy = 1e3 * run.energy_to_hand();
+  s += fmt::format("Energy    the arm {} {:.2f} mJ net{}\n", energy > 0 ? "gave the hand" : "took",
+                   std::abs(energy),
+                   energy > 0 ? "." : " from the hand, as a passive surface does.");
   s += fmt::format(
-      "Energy    the arm {} {:.2f} mJ in all{}\n", energy > 0 ? "gave the hand" : "took",
-      std::abs(energy),
-      energy > 0 ? ": more than it took." : " from the hand, as a passive surface does.");
-  s += fmt::format(
-      "Loop      {} ticks, {:.1f} of {:.1f} per second asked; {}.\n", run.ticks(), run.rate(),
-      report.rate_asked,
+      "Loop      {} ticks, {:.1f} of the requested {:.1f} per second; {}.\n", run.ticks(),
+      run.rate(), report.rate_asked,
       report.virtual_time
-          ? "in virtual time, so every run is the same"
-          : fmt::format("a tick came {:.0f} us after the last at most, {:.0f} us wanted",
+          ? "virtual time, bit-identical in every run"
+          : fmt::format("longest period {:.0f} us, requested {:.0f} us",
                         microseconds(static_cast<double>(run.period().max_ns())), period_us));
-  s +=
-      report.virtual_time
-          ? std::string("Tick      not timed: on the virtual clock no time passes within a tick.\n")
-          : fmt::format(
-                "Tick      {:.1f} us of work in half of the ticks, {:.1f} us in 999 of 1000; there "
-                "is time for {:.0f} us.\n",
-                microseconds(run.work().percentile(0.5)),
-                microseconds(run.work().percentile(0.999)), period_us);
+  s += report.virtual_time
+           ? std::string("Tick      not timed: in virtual time a tick takes no time.\n")
+           : fmt::format(
+                 "Tick      {:.1f} us of work (median), {:.1f} us (99.9 %); the period is {:.0f} "
+                 "us.\n",
+                 microseconds(run.work().percentile(0.5)),
+                 microseconds(run.work().percentile(0.999)), period_us);
   if (report.paging) {
     s += fmt::format(
-        "Pages     {} read from the disk, {} given up, {} damaged; one was missing in {} "
-        "ticks{}.\n",
+        "Pages     {} read from disk, {} evicted, {} damaged; a page was missing in {} ticks{}.\n",
         report.paging->loads, report.paging->evictions, report.paging->failures,
-        report.paging->misses, report.paging->misses > 0 ? ", and the last plane was held" : "");
+        report.paging->misses, report.paging->misses > 0 ? ", and the last plane was kept" : "");
   }
-  s += fmt::format("Wire      {} reports, {} not understood, {} ticks without a new one.\n",
+  s += fmt::format("Wire      {} reports, {} invalid, {} ticks without a new report.\n",
                    report.wire.reports, report.wire.rejected, report.wire.missing);
-  s += fmt::format(
-      "Safety    force cut to the limit in {} ticks, rise held back in {}, soft start in {}.\n",
-      report.gate.limited, report.gate.rise_limited, report.gate.soft_started);
+  s += fmt::format("Safety    force limited in {} ticks, rise limited in {}, soft start in {}.\n",
+                   report.gate.limited, report.gate.rise_limited, report.gate.soft_started);
   if (report.carried_weight > 0) {
-    s += fmt::format(
-        "Gravity   the motors carried {}{:.3g} N of the arm beside the scene's forces.\n",
-        report.carried_by_pose ? "up to " : "", report.carried_weight);
+    s += fmt::format("Gravity   the motors also carried {}{:.3g} N of the arm's weight.\n",
+                     report.carried_by_pose ? "up to " : "", report.carried_weight);
   }
   if (report.carry_withdrawn > 0) {
     s += fmt::format(
         "Gravity   compensation is not trusted: it was switched off {} time{} because the tip "
-        "moved along its force. If no hand moved it, correct gravity_compensation of the arm "
-        "file: see `thimble identify`.\n",
+        "moved along its force. If no hand moved it, correct gravity_compensation in the arm file: "
+        "see `thimble identify`.\n",
         report.carry_withdrawn, report.carry_withdrawn == 1 ? "" : "s");
   }
   if (report.walls.pushed > 0) {
     s += fmt::format(
-        "Walls     the tip left the workspace of the arm file: walls pushed in {} ticks, with "
-        "{:.2f} N at most ({} wall).\n",
+        "Walls     the tip left the workspace: walls pushed in {} ticks, with at most {:.2f} N ({} "
+        "wall).\n",
         report.walls.pushed, report.walls.f_strongest_W.norm(),
         wall_side(report.walls.f_strongest_W));
   }
   if (report.energy_stage == driver::EnergyStage::kPassivity) {
     s += fmt::format(
-        "Gate      energy watched: {:.2f} mJ given at most beyond what it took; damped in {} "
+        "Gate      passivity: at most {:.2f} mJ given beyond the energy taken; damping in {} "
         "ticks.\n",
-        0 - 1e3 * report.gate.energy_least, report.gate.damped);  // no -0.00
+        0 - 1e3 * report.gate.energy_least, report.gate.damped);  // avoids -0.00
   } else if (report.energy_stage == driver::EnergyStage::kBounding) {
-    s += fmt::format("Gate      energy bounded: force cut in {} ticks.\n", report.gate.bounded);
+    s += fmt::format("Gate      energy bound: force limited in {} ticks.\n", report.gate.bounded);
   }
   if (report.gate.power_limited > 0) {
     s += fmt::format(
-        "Power     {:.2f} W given to the hand on average at most; force lowered in {} ticks "
-        "(power_max of the arm file).\n",
+        "Power     {:.2f} W maximum mean power; force reduced in {} ticks (power_max in the arm "
+        "file).\n",
         report.gate.power_max, report.gate.power_limited);
   }
   if (report.gate.oscillations > 0) {
     s += fmt::format(
-        "Program   its force oscillated and grew {} time{}, at {:.0f} Hz at last: it was lowered "
-        "in {} ticks. Its spring or damper is too stiff for this arm and loop.\n",
+        "Program   its force oscillated and grew {} time{}, last at {:.0f} Hz: it was reduced in "
+        "{} ticks. Its spring or damper is too stiff for this arm and loop.\n",
         report.gate.oscillations, report.gate.oscillations == 1 ? "" : "s",
         report.gate.oscillation_frequency, report.gate.calmed);
   }
   if (report.heat_known && report.heat_most >= driver::HeatGuard::kWarning) {
     s +=
-        fmt::format("Heat      a motor reached {:.0f} % of its limit; force lowered in {} ticks.\n",
+        fmt::format("Heat      a motor reached {:.0f} % of its limit; force reduced in {} ticks.\n",
                     100 * report.heat_most, report.heat_lowered);
   }
   if (report.gate.stalls > 0) {
     s += fmt::format(
-        "Stalls    the loop stood still {} time{}; the force came back within {:.0f} ms.\n",
+        "Stalls    the loop was blocked {} time{}; the force returned within {:.0f} ms.\n",
         report.gate.stalls, report.gate.stalls == 1 ? "" : "s", 1e3 * report.reopen);
   }
   if (report.feel_check == scene::FeelCheckState::kUnchecked) {
-    s += "Arm       UNCHECKED: it had its whole force without a passed feel check.\n";
+    s += "Arm       UNCHECKED: full force without a passed feel check.\n";
   } else if (report.feel_check == scene::FeelCheckState::kNone) {
-    s += fmt::format("Arm       without a passed feel check; its force was at most {:.2f} N.\n",
+    s += fmt::format("Arm       no passed feel check; its force was limited to {:.2f} N.\n",
                      report.force_limit);
   }
-  const std::string left = report.zero_assured ? "the arm was left with zero force.\n"
-                                               : "the arm did not take the last zero force.\n";
+  const std::string left = report.zero_assured ? "the arm accepted zero force.\n"
+                                               : "the arm did not accept the last zero force.\n";
   switch (report.end) {
     case driver::ServoEnd::kDone:
-      s += "End       the scene was over; " + left;
+      s += "End       the scene ended; " + left;
       break;
     case driver::ServoEnd::kStopped:
-      s += "End       it was stopped early; " + left;
+      s += "End       stopped early; " + left;
       break;
     case driver::ServoEnd::kFault:
-      s += "End       the force went off: " + std::string(driver::describe(report.fault)) + "\n";
+      s += "End       the force was switched off: " + std::string(driver::describe(report.fault)) +
+           "\n";
       break;
   }
-  // A loop with a real arm outlives its faults.
+  // With a real arm the loop continues after a fault.
   if (report.end != driver::ServoEnd::kFault && report.fault != driver::Fault::kNone) {
     s += "Fault     the force was off at the end: " + std::string(driver::describe(report.fault)) +
          "\n";
   }
   if (report.link != driver::LinkState::kConnected) {
     s += std::string("Link      the arm was ") +
-         (report.link == driver::LinkState::kLost ? "gone from the wire" : "silent") +
-         " at the end.\n";
+         (report.link == driver::LinkState::kLost ? "disconnected" : "silent") + " at the end.\n";
   }
   if (!report.zero_assured) {
-    s += "DANGER    A force may still stand at the arm: its own watchdog must switch the motors "
-         "off. "
-         "See that nothing pulls any more, and switch it off.\n";
+    s += "DANGER    The arm may still apply a force: its watchdog must switch the motors off. "
+         "Check that nothing pulls, then switch the arm off.\n";
   }
   if (!report.virtual_time && !report.real_time.advice.empty()) {
     s += "Advice    " + report.real_time.advice + "\n";

@@ -5,7 +5,7 @@
 namespace thimble::session {
 namespace {
 
-constexpr std::int64_t kFrame = 16'000'000;  // ns: a screen's 60 pictures a second
+constexpr std::int64_t kFrame = 16'000'000;  // ns: 60 pictures a second, as a screen shows
 
 }  // namespace
 

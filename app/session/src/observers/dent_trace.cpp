@@ -25,7 +25,7 @@ void DentTrace::take(const driver::TickRecord& tick) noexcept {
   const render::BodyPatch& patch = drawn_.patch;
   const bool was_dented = frame_count_ > 0 && frames_[frame_count_ - 1].triangles > 0;
   if (patch.triangle_count == 0 && !was_dented) return;
-  // The end of a dent is kept whenever it comes.
+  // The end of a dent is always stored.
   if (patch.triangle_count > 0 && until_next_ > 0) {
     --until_next_;
     return;
@@ -62,7 +62,7 @@ void DentTrace::halve() noexcept {
   bool goes = false;
   for (std::size_t i = 0; i < frame_count_; ++i) {
     Frame frame = frames_[i];
-    // Ends of dents stay, so that none is left standing.
+    // Keeps the ends of dents; otherwise a dent would remain visible after its end.
     if (frame.triangles > 0) {
       goes = !goes;
       if (!goes) continue;

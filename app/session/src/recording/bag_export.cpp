@@ -9,10 +9,11 @@
 namespace thimble::session {
 
 driver::Result<void> export_bag(const Recording& recording, const std::filesystem::path& folder) {
-  if (recording.ticks.empty()) return driver::Error{"The recording holds no tick to write."};
-  // A recording of another's making may begin before its clock; a bag does not.
+  if (recording.ticks.empty())
+    return driver::Error{"The recording is empty; there is nothing to write."};
+  // A recording written by another program may have negative times; a bag cannot.
   if (recording.ticks.front().time_ns < 0) {
-    return driver::Error{"The recording begins before time zero, which no bag can."};
+    return driver::Error{"The recording begins before time zero, which a bag cannot store."};
   }
   bag::BagTrack poses, sent, wanted;
   poses.name = "/pose";
@@ -29,7 +30,7 @@ driver::Result<void> export_bag(const Recording& recording, const std::filesyste
       pose.q[i] = tick.q_WT[i];
       length2 += pose.q[i] * pose.q[i];
     }
-    if (!(length2 > 0)) pose.q = {1, 0, 0, 0};  // not known
+    if (!(length2 > 0)) pose.q = {1, 0, 0, 0};  // unknown orientation
     poses.messages.push_back(pose);
     sent.messages.push_back({.time_ns = tick.time_ns, .value = vector(tick.f_sent_W)});
     wanted.messages.push_back({.time_ns = tick.time_ns, .value = vector(tick.f_wanted_W)});

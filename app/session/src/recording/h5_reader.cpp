@@ -16,23 +16,23 @@
 namespace thimble::session {
 namespace {
 
-constexpr std::size_t kTextMax = std::size_t{16} << 20;      // bytes; scenes have some thousand
+constexpr std::size_t kTextMax = std::size_t{16} << 20;      // bytes; scenes have a few thousand
 constexpr std::uint64_t kTicksMax = std::uint64_t{1} << 32;  // 50 days at 1 kHz
-// No stream of deflate is longer than this times its bytes (zlib's technical details: 1032:1).
+// Largest expansion factor of a deflate stream (zlib's technical details: 1032:1).
 constexpr std::uint64_t kDeflateMax = 1032;
-// Recordings of any content up to 1 GiB; beyond that at most this times their bytes on the disk.
-// [chosen: columns of zeros that a copy left out as holes and a compressed column]
+// Recordings up to 1 GiB may have any content; larger ones at most this factor times their bytes on
+// disk. [chosen: allows columns of zeros that a copy stored as holes, and a compressed column]
 constexpr std::uint64_t kMemoryFree = std::uint64_t{1} << 30, kMemoryPerByte = 64;
 
-/// A recording that is being read.
+/// Recording that is being read.
 struct Source {
   H5Handle file;
-  std::uint64_t size;    // bytes of the file
-  std::uint64_t stored;  // of them on the disk
+  std::uint64_t size;    // Size of the file, bytes.
+  std::uint64_t stored;  // Bytes stored on disk.
 };
 
-/// Returns the number of times that a data set may be larger than its bytes on the disk; 0 if its
-/// bytes do not lie in this file, or pass through a filter that is not the library's own.
+/// Returns the factor by which a data set may be larger than its bytes on disk. Returns 0 if its
+/// bytes are not in this file, or pass through a filter that is not built into the library.
 std::uint64_t growth_of(const H5Handle& set) {
   const H5Handle how(H5Dget_create_plist(set.id()), H5Pclose);
   if (!how.good() || H5Pget_external_count(how.id()) != 0) return 0;
@@ -55,7 +55,7 @@ std::uint64_t growth_of(const H5Handle& set) {
   return growth;
 }
 
-/// Opens a data set that is in the file itself: no link to another place, no bytes in other files.
+/// Opens a data set that is in the file itself, not behind a link.
 H5Handle open_set(const Source& source, const char* name) {
   const hid_t file = source.file.id();
   H5L_info_t link{};
@@ -64,7 +64,7 @@ H5Handle open_set(const Source& source, const char* name) {
   return {here ? H5Dopen2(file, name, H5P_DEFAULT) : H5I_INVALID_HID, H5Dclose};
 }
 
-/// Returns whether the file holds so many bytes of a data set.
+/// Returns whether the file contains the given number of bytes of a data set.
 bool stores(const Source& source, const H5Handle& set, std::uint64_t bytes) {
   const std::uint64_t growth = growth_of(set);
   const std::uint64_t stored = H5Dget_storage_size(set.id());
@@ -78,7 +78,7 @@ bool stores(const Source& source, const H5Handle& set, std::uint64_t bytes) {
   return bytes / growth <= stored;
 }
 
-/// Returns the sizes of a data set of numbers, both 0 if it is none.
+/// Returns the sizes of a data set with one or two dimensions; both are 0 otherwise.
 std::array<hsize_t, 2> sizes_of(const H5Handle& set) {
   const H5Handle space(set.good() ? H5Dget_space(set.id()) : H5I_INVALID_HID, H5Sclose);
   std::array<hsize_t, 2> sizes{0, 1};
@@ -125,7 +125,7 @@ bool read_one(const Source& source, const char* name, hid_t type, T& value) {
          H5Dread(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) >= 0;
 }
 
-/// Reads the first rows of one column. Returns no bytes if it does not hold them.
+/// Reads the first rows of one column; empty if it does not contain them.
 std::optional<std::vector<unsigned char>> read_column(const Source& source,
                                                       const RecordingColumn& column,
                                                       std::uint64_t rows) {
@@ -135,7 +135,7 @@ std::optional<std::vector<unsigned char>> read_column(const Source& source,
   if (rows == 0) return std::vector<unsigned char>();
   const H5Handle type(H5Dget_type(set.id()), H5Tclose);
   const std::uint64_t element = type.good() ? H5Tget_size(type.id()) : 0;
-  // Numbers in the file may be shorter than ours, which HDF5 converts.
+  // Numbers in the file may have a smaller type; HDF5 converts them.
   if (element == 0 || element > 16 || !stores(source, set, rows * column.width * element)) {
     return {};
   }
@@ -155,8 +155,8 @@ std::optional<std::vector<unsigned char>> read_column(const Source& source,
   return bytes;
 }
 
-/// Returns whether the file can hold so many ticks: each has a number of its own, so none of that
-/// column is a hole, and all together find memory.
+/// Returns whether the file can contain the given number of ticks, and memory suffices. Each tick
+/// has a different number, so the column "tick" contains no holes.
 bool can_hold(const Source& source, std::uint64_t rows) {
   std::uint64_t row_bytes = sizeof(driver::TickRecord);
   for (const RecordingColumn& column : recording_columns()) row_bytes += column.bytes();
@@ -175,10 +175,11 @@ void write_error(driver::ApartWriter& out, const std::string& sentence) {
 }
 
 H5Handle open_file(int descriptor) {
-  // The library opens by name; this name is the file that was found to be a regular one.
+  // The library opens files by name; this name refers to the descriptor, which is known to be a
+  // regular file.
   const std::string name = "/proc/self/fd/" + std::to_string(descriptor);
   const H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  // A recording is read while it grows, whatever lock its writer holds.
+  // A recording can be read while it grows, so the writer's lock is ignored.
   H5Pset_file_locking(access.id(), false, true);
   return {H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose};
 }
@@ -191,14 +192,14 @@ std::uint64_t max_recording_memory(std::uint64_t stored) noexcept {
 
 void read_h5(int descriptor, std::uint64_t size, std::uint64_t stored, driver::ApartWriter& out) {
   silence_hdf5();
-  H5PLset_loading_state(0);  // no code from folders that a file may name
+  H5PLset_loading_state(0);  // loads no plugins from folders that a file may name
   const Source source{open_file(descriptor), size, stored};
   const rlimit none{0, 0};
-  setrlimit(RLIMIT_NOFILE, &none);  // whatever a file says, no other is opened
+  setrlimit(RLIMIT_NOFILE, &none);  // no other file can be opened, whatever this one contains
   int format = 0;
   if (!source.file.good() || !read_attribute(source, "format", H5T_NATIVE_INT, format)) {
     return write_error(out,
-                       "this is not a recording. `thimble run SCENE --record FILE` makes one.");
+                       "this is not a recording. Make one with `thimble run SCENE --record FILE`.");
   }
   if (format != kRecordingFormat) {
     return write_error(out, "this recording has format " + std::to_string(format) +
@@ -214,7 +215,7 @@ void read_h5(int descriptor, std::uint64_t size, std::uint64_t stored, driver::A
     texts.push_back(std::move(read).value_or(""));
   }
   if (!known) {
-    return write_error(out, "what the recording is of cannot be read; the file is damaged.");
+    return write_error(out, "the description of the run cannot be read; the file is damaged.");
   }
   std::uint8_t complete = 0;
   if (!read_one(source, "rows", H5T_NATIVE_UINT64, head.rows) ||
@@ -223,8 +224,8 @@ void read_h5(int descriptor, std::uint64_t size, std::uint64_t stored, driver::A
   }
   head.complete = complete;
   if (!can_hold(source, head.rows)) {
-    return write_error(out,
-                       "it claims " + std::to_string(head.rows) + " ticks and does not hold them.");
+    return write_error(out, "its header states " + std::to_string(head.rows) +
+                                " ticks, but it does not contain them; the file is damaged.");
   }
   const auto columns = recording_columns();
   for (std::size_t i = 0; i < columns.size(); ++i) {

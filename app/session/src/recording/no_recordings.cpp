@@ -1,4 +1,4 @@
-// In place of the writer and the reader of recordings in a build without HDF5.
+// Replaces the writer and the reader of recordings in a build without HDF5.
 #include <utility>
 
 #include "recording/recording_layout.h"
@@ -7,8 +7,7 @@ namespace thimble::session {
 namespace {
 
 driver::Error absent(const std::filesystem::path& path) {
-  return {path.string() +
-          ": this build has no recordings; configure with -D THIMBLE_RECORDINGS=ON."};
+  return {path.string() + ": built without recordings; configure with -D THIMBLE_RECORDINGS=ON."};
 }
 
 }  // namespace

@@ -17,8 +17,8 @@
 namespace thimble::session {
 namespace {
 
-/// Returns whether the flags of a tick are such as a program may look at: a bool is 0 or 1, an enum
-/// has a name. Looks at the bytes, for that is what may be wrong.
+/// Returns whether the flags of a tick are valid: a bool is 0 or 1, and an enum has a name.
+/// Compares bytes, because reading an invalid bool or enum is undefined.
 bool sound(const driver::TickRecord& tick) {
   const auto byte_at = [&](std::size_t offset) {
     return reinterpret_cast<const unsigned char*>(&tick)[offset];
@@ -35,7 +35,7 @@ bool sound(const driver::TickRecord& tick) {
          byte_at(offsetof(driver::TickRecord, home_needed)) <= 1;
 }
 
-/// Takes the texts of a recording; false if they are not all there.
+/// Reads the texts of a recording; returns false if any is missing.
 bool take_info(driver::ApartReader& in, RecordingInfo& info) {
   for (const RecordingText& text : kRecordingTexts) {
     if (!in.take_array(info.*text.text)) return false;
@@ -50,7 +50,7 @@ bool take_ticks(const H5Head& head, std::span<const std::byte> bytes, Recording&
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if ((head.columns >> i & 1) != 0) row_bytes += columns[i].bytes();
   }
-  // Exactly as many as there are bytes.
+  // The number of rows must match the number of bytes exactly.
   if (row_bytes == 0 || head.rows != bytes.size() / row_bytes || bytes.size() % row_bytes != 0) {
     return false;
   }
@@ -102,7 +102,7 @@ driver::Result<Recording> read_recording(const std::filesystem::path& path) {
   info.seed = head.seed;
   recording.complete = head.complete == 1;
   if (!(info.rate > 0) || !std::isfinite(info.rate)) {
-    return wrong("what the recording is of cannot be read; the file is damaged.");
+    return wrong("the description of the run cannot be read; the file is damaged.");
   }
   if (!take_info(in, info) || !take_ticks(head, in.left(), recording)) {
     return damaged("crashes its reader");

@@ -37,15 +37,16 @@ void Recorder::stop_thread() {
 driver::Error Recorder::full() const {
   return driver::Error{path().string() + ": the recording is full after " +
                        std::to_string(file_.rows()) +
-                       " ticks; those after them are missing. Record long runs in several files."};
+                       " ticks; later ticks are missing. Record long runs in several files."};
 }
 
 void Recorder::serve() noexcept {
-  // An end that comes in two pieces takes two rounds; what comes meanwhile waits for the next time.
+  // Two rounds, because ticks that wrap around the end of the ring are in two pieces. Ticks that
+  // arrive meanwhile wait for the next call.
   for (int piece = 0; piece < 2; ++piece) {
     const auto ticks = ring_.front();
     if (ticks.empty()) return;
-    // After trouble the ticks are let go, so that the servo finds room and nothing piles up.
+    // After an error the ticks are dropped, so that the servo always finds room.
     if (!trouble_) {
       try {
         if (auto written = file_.append(ticks); !written) trouble_ = written.error();
@@ -53,8 +54,9 @@ void Recorder::serve() noexcept {
       } catch (const std::exception& out_of_memory) {
         trouble_ = driver::Error{std::string("The recording ends: ") + out_of_memory.what()};
       }
-      // At once: a long run is not over for hours.
-      if (trouble_) scene::logger().warn("{} The run continues without it.", trouble_->message);
+      // Reported at once, because a long run may take hours.
+      if (trouble_)
+        scene::logger().warn("{} The run continues without the recording.", trouble_->message);
     }
     ring_.drop(ticks.size());
   }
@@ -67,9 +69,8 @@ driver::Result<void> Recorder::finish() {
   if (trouble_) return *trouble_;
   if (!finished) return finished;
   if (dropped() > 0) {
-    return driver::Error{path().string() + ": the disk was too slow for " +
-                         std::to_string(dropped()) +
-                         " ticks, which are missing; record to a faster one."};
+    return driver::Error{path().string() + ": the disk was too slow; " + std::to_string(dropped()) +
+                         " ticks are missing. Record to a faster disk."};
   }
   return {};
 }

@@ -45,7 +45,7 @@ driver::Result<void> RecordingFile::append(std::span<const driver::TickRecord> t
     }
     const auto now = ticks.first(std::min<std::uint64_t>(ticks.size(), layout_.room() - rows_));
     if (auto written = layout_.write_ticks(now, rows_); !written) return ends(written.error());
-    // Only now do they count.
+    // The ticks become valid only here.
     if (auto written = layout_.set_rows(rows_ + now.size()); !written) return ends(written.error());
     rows_ += now.size();
     ticks = ticks.subspan(now.size());
@@ -54,14 +54,15 @@ driver::Result<void> RecordingFile::append(std::span<const driver::TickRecord> t
   return {};
 }
 
-// The larger file is laid out by a thread of its own, for some disks fill it with zeros, and gets
-// its rows little by little: when this one is full, nothing is left to do that takes time.
+// Prepares a larger file in advance, so that growing takes little time. A separate thread creates
+// it, because some file systems fill it with zeros. Its rows are then copied in small portions.
 void RecordingFile::prepare_to_grow(std::uint64_t new_rows) {
-  constexpr std::uint64_t kRowsEach = 4;  // per new one: all are copied when two thirds are full
+  // Rows copied per new row. All rows are then copied when the file is two thirds full.
+  constexpr std::uint64_t kRowsEach = 4;
   if (layout_.room() == rows_max_ || rows_ < layout_.room() / 2) return;
   if (!larger_ && !making_.valid()) {
     auto part = layout_.file().open_again(kRecordingOutput);
-    if (!part) return;  // grow() tries again, and reports it
+    if (!part) return;  // grow() tries again and reports the error
     const std::uint64_t room = std::min(rows_max_, 2 * layout_.room());
     making_ = std::async(std::launch::async,
                          [file = std::move(part).value(), info = info_, room]() mutable {
@@ -104,11 +105,11 @@ driver::Result<void> RecordingFile::grow() {
 }
 
 driver::Result<void> RecordingFile::finish(bool complete) {
-  if (making_.valid()) (void)making_.get();  // its part is removed
+  if (making_.valid()) (void)making_.get();  // this removes its file
   larger_.reset();
   complete = complete && left_out_ == 0;
   if (rows_ == layout_.room() || !shorten(complete)) {
-    // Where there was no room for a shorter file, what was recorded is all in the longer one.
+    // If there was no space for a shorter file, the longer one contains all ticks.
     if (complete) {
       if (auto marked = layout_.set_complete(); !marked) return ends(marked.error());
     }
@@ -116,7 +117,7 @@ driver::Result<void> RecordingFile::finish(bool complete) {
   return layout_.file().commit();
 }
 
-// A data set in one piece cannot shrink: a shorter file takes this one's place.
+// A contiguous data set cannot shrink, so a shorter file replaces this one.
 bool RecordingFile::shorten(bool complete) {
   auto part = layout_.file().open_again(kRecordingOutput);
   if (!part) return false;

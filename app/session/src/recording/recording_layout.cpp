@@ -20,10 +20,10 @@
 namespace thimble::session {
 namespace {
 
-// Numbers go to the file as they lie in memory.
+// Numbers are written to the file in their memory layout.
 static_assert(std::endian::native == std::endian::little);
 
-/// One data set whose bytes lie in one piece at a place that is known from the start.
+/// Contiguous data set at a known position.
 struct Laid {
   bool good = false;
   std::uint64_t place = 0;
@@ -37,7 +37,7 @@ Laid lay(const H5Handle& file, const char* name, hid_t type, std::span<const hsi
   if (!space.good() || !how.good()) return {};
   H5Pset_layout(how.id(), H5D_CONTIGUOUS);
   H5Pset_alloc_time(how.id(), H5D_ALLOC_TIME_EARLY);
-  H5Pset_fill_time(how.id(), H5D_FILL_TIME_NEVER);  // a hole in the file reads as 0
+  H5Pset_fill_time(how.id(), H5D_FILL_TIME_NEVER);  // a hole in the file reads as zeros
   const H5Handle set(
       H5Dcreate2(file.id(), name, type, space.id(), H5P_DEFAULT, how.id(), H5P_DEFAULT), H5Dclose);
   if (!set.good()) return {};
@@ -96,14 +96,14 @@ bool write_info(const H5Handle& file, const RecordingInfo& info) {
          write_number(file, "format", H5T_STD_I32LE, H5T_NATIVE_INT, kRecordingFormat);
 }
 
-/// Returns file access without HDF5's own locks: ours are there already.
+/// Returns file access without HDF5's locks; OutputFile has its own.
 H5Handle access_without_locks() {
   H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_file_locking(access.id(), false, true);
   return access;
 }
 
-/// Returns whether an HDF5 file holds what every recording holds.
+/// Returns whether an HDF5 file contains the entries of every recording.
 bool holds_recording(const std::filesystem::path& path) {
   silence_hdf5();
   if (H5Fis_hdf5(path.c_str()) <= 0) return false;
@@ -115,7 +115,7 @@ bool holds_recording(const std::filesystem::path& path) {
 }
 
 /// Returns whether an existing file is a recording; an HDF5 file of another program is not. HDF5
-/// may crash on a damaged file, so it looks at the file in a separate process.
+/// may crash on a damaged file, so a separate process examines the file.
 bool is_recording(const std::filesystem::path& path) {
   if (!driver::is_regular(path)) return false;
   const std::lock_guard library(hdf5_mutex());
@@ -145,8 +145,9 @@ driver::Result<void> RecordingLayout::lay_out(const RecordingInfo& info) {
   silence_hdf5();
   const auto refused = [this] {
     return output::cannot_write(
-        file_.part(), "there is no room for " + std::to_string(room_) +
-                          " ticks, or the disk has an error. Make room, or name another.");
+        file_.part(),
+        "there is no space for " + std::to_string(room_) +
+            " ticks, or the disk has an error. Free some space, or use another disk.");
   };
   {
     const H5Handle access = access_without_locks();
@@ -163,21 +164,22 @@ driver::Result<void> RecordingLayout::lay_out(const RecordingInfo& info) {
     }
     const hsize_t one = 1;
     const Laid rows = lay(file, "rows", H5T_STD_U64LE, {&one, 1}, "1",
-                          "ticks recorded; what the columns hold beyond them means nothing");
-    const Laid complete = lay(file, "complete", H5T_STD_U8LE, {&one, 1}, "1",
-                              "1 if the recording was ended and lacks no tick, otherwise 0");
+                          "number of recorded ticks; later entries of the columns have no meaning");
+    const Laid complete =
+        lay(file, "complete", H5T_STD_U8LE, {&one, 1}, "1",
+            "1 if the recording was finished and no tick is missing, otherwise 0");
     if (!rows.good || !complete.good || H5Fflush(file.id(), H5F_SCOPE_GLOBAL) < 0) return refused();
     rows_place_ = rows.place;
     complete_place_ = complete.place;
   }
-  // Closing extends the file to its whole size, and a full disk shows there at the latest.
+  // Closing extends the file to its full size, so a full disk is detected here at the latest.
   const std::uint64_t zero = 0;
   const unsigned char no = 0;
   auto written = write_at(&zero, sizeof zero, rows_place_);
   if (written) written = write_at(&no, 1, complete_place_);
   if (written) return {};
   return output::cannot_write(file_.part(),
-                              written.error().message + ". Make room, or name another disk.");
+                              written.error().message + ". Free some space, or use another disk.");
 }
 
 driver::Result<void> RecordingLayout::write_at(const void* bytes, std::size_t size,
@@ -226,7 +228,7 @@ driver::Result<void> RecordingLayout::copy_rows(const RecordingLayout& from, std
           pread(from.file_.descriptor(), column_.data(), std::min<std::uint64_t>(kPiece, last - at),
                 static_cast<off_t>(from.places_[i] + at));
       if (got < 0 && errno == EINTR) continue;
-      if (got <= 0) return driver::Error{"what was recorded cannot be read again"};
+      if (got <= 0) return driver::Error{"the recorded ticks cannot be read back"};
       if (auto written = write_at(column_.data(), static_cast<std::size_t>(got), places_[i] + at);
           !written) {
         return written;

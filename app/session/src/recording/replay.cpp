@@ -31,7 +31,7 @@ std::array<double, 3> plain(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-/// Returns the state that the arm was in, `dt` (s) after the tick before.
+/// Returns the recorded state of the arm, `dt` (s) after the previous tick.
 driver::DeviceState state_of(const TickRecord& then, double dt) {
   driver::DeviceState state;
   state.time_ns = then.time_ns;
@@ -52,7 +52,8 @@ driver::DeviceState state_of(const TickRecord& then, double dt) {
   return state;
 }
 
-/// Returns a recorded tick with the scene's new answer; what the motors got is the recorded one.
+/// Returns a recorded tick with the newly computed force and contact; the force sent to the motors
+/// is the recorded one.
 TickRecord with_answer(const TickRecord& then, const driver::ForceCommand& command) {
   TickRecord now = then;
   now.f_wanted_W = plain(command.f_T_W);
@@ -83,7 +84,7 @@ driver::Result<std::filesystem::path> scene_of(const Recording& recording,
   return scene::find_scene(scene);
 }
 
-/// Begins a replay of a recording in a scene.
+/// Starts a replay of a recording in a scene.
 Replay begin_replay(const Recording& recording, const scene::Scene& scene,
                     const std::filesystem::path& file) {
   Replay replay;
@@ -100,15 +101,15 @@ Replay begin_replay(const Recording& recording, const scene::Scene& scene,
   return replay;
 }
 
-/// Gives the arm's state of one tick to a scene's force law again, and compares its answer. A hand
-/// whose arm was in fault felt nothing, and gives nothing.
+/// Passes the arm's state of one tick to the scene's force law, and compares the result with the
+/// recording. An arm in fault felt nothing, so nothing is computed.
 void feel_again(const Recording& recording, std::size_t i, ReplayedLaw& law, Replay& replay) {
   const TickRecord& then = recording.ticks[i];
   const std::int64_t before_ns = recording.ticks[i == 0 ? 0 : i - 1].time_ns;
-  // As the device reckons it, so that it is the same to the bit.
+  // Computed as by the device, so that it is bit-identical.
   const double dt = static_cast<double>(then.time_ns - before_ns) * 1e-9;
-  // A fault that the reading of the arm found came before the law, one of the gate after it; where
-  // the law was not asked nothing was felt.
+  // A fault found in reading the arm precedes the law, and a fault of the gate follows it. If the
+  // law was not called in the run, it is not called here.
   const driver::DeviceState state = state_of(then, dt);
   const Eigen::Vector3d wanted = vector(then.f_wanted_W);
   const bool off = !recording.info.arm_in_scene.empty() && then.fault != driver::Fault::kNone &&
@@ -120,7 +121,7 @@ void feel_again(const Recording& recording, std::size_t i, ReplayedLaw& law, Rep
   compare(then, replay.felt.ticks.back(), replay.compared);
 }
 
-/// Returns which recording is each arm's, in the scene's order.
+/// Returns the index of each arm's recording, in the scene's order.
 driver::Result<std::vector<std::size_t>> arms_of(std::span<const Recording> recordings,
                                                  const scene::Scene& scene,
                                                  const std::filesystem::path& file) {
@@ -131,8 +132,9 @@ driver::Result<std::vector<std::size_t>> arms_of(std::span<const Recording> reco
     const auto is_it = [&name](const Recording& one) { return one.info.arm_in_scene == name; };
     const auto found = std::find_if(recordings.begin(), recordings.end(), is_it);
     if (found == recordings.end()) {
-      return driver::Error{file.string() + ": no recording of the arm \"" + name +
-                           "\" was given; the scene's arms touch together, so name all of them."};
+      return driver::Error{
+          file.string() + ": the recording of the arm \"" + name +
+          "\" is missing. The arms share one scene, so pass the recordings of all arms."};
     }
     order.push_back(static_cast<std::size_t>(found - recordings.begin()));
   }
@@ -142,7 +144,7 @@ driver::Result<std::vector<std::size_t>> arms_of(std::span<const Recording> reco
                       one.info.scene_text == first.info.scene_text &&
                       one.info.options == first.info.options;
     if (!same || recordings.size() != names.size()) {
-      return driver::Error{file.string() + ": the recordings are not of one run of its " +
+      return driver::Error{file.string() + ": the recordings are not from one run of its " +
                            std::to_string(names.size()) + " arms."};
     }
   }
@@ -153,7 +155,7 @@ driver::Result<std::vector<std::size_t>> arms_of(std::span<const Recording> reco
 
 namespace {
 
-/// Loads the scene of a recording with what its run was asked for.
+/// Loads the scene of a recording with the options of its run.
 driver::Result<scene::Scene> load_scene_of(const Recording& recording,
                                            const std::filesystem::path& file,
                                            const std::string& arm, bool several_arms) {
@@ -167,7 +169,7 @@ driver::Result<scene::Scene> load_scene_of(const Recording& recording,
   return scene;
 }
 
-/// Builds the objects of a scene and shows them to who looks on.
+/// Builds the objects of a scene and passes them to `watch`, if it is not null.
 driver::Result<std::shared_ptr<scene::SceneObjects>> build(const scene::Scene& scene,
                                                            ReplayWatch* watch) {
   auto built = scene::SceneObjects::build(scene);
@@ -210,7 +212,7 @@ driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> r
 driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> recordings,
                                                     const std::string& scene_name,
                                                     ReplayWatch* watch) {
-  if (recordings.empty()) return driver::Error{"There is no recording to replay."};
+  if (recordings.empty()) return driver::Error{"No recording to replay was given."};
   if (recordings.size() == 1 && recordings.front().info.arm_in_scene.empty()) {
     auto alone = replay_alone(recordings.front(), scene_name, watch);
     if (!alone) return alone.error();
@@ -237,7 +239,7 @@ driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> r
   }
   const double period = 1 / recordings.front().info.rate;
   for (std::size_t i = 0; i < recordings.front().ticks.size(); ++i) {
-    // As in the run: each arm in the scene's order, then the bodies that all of them touch.
+    // Same order as in the run: each arm in the scene's order, then the bodies.
     for (std::size_t arm = 0; arm < order->size(); ++arm) {
       const std::size_t k = (*order)[arm];
       feel_again(recordings[k], i, *laws[arm], replays[k]);
@@ -251,22 +253,22 @@ driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> r
 
 driver::Result<void> check_repeatable(const Recording& recording, const std::string& scene) {
   const auto& ticks = recording.ticks;
-  // Where the disk was too slow; missed periods of the loop are not missing ticks.
+  // A gap means that the disk was too slow. Missed periods of the loop leave no gap here.
   const auto gap = std::adjacent_find(ticks.begin(), ticks.end(), [](const auto& a, const auto& b) {
     return b.tick != a.tick + 1;
   });
   if (gap != ticks.end()) {
-    return driver::Error{"ticks are missing in the recording, because the disk was slow."};
+    return driver::Error{"ticks are missing in the recording because the disk was too slow."};
   }
   if (!ticks.empty() && ticks.front().tick != 0) {
-    return driver::Error{"the recording does not begin with the run's first tick."};
+    return driver::Error{"the recording does not start with the first tick of the run."};
   }
   const auto other_law = [](const TickRecord& tick) {
     return tick.setting == TickRecord::kOtherLaw;
   };
   if (std::any_of(ticks.begin(), ticks.end(), other_law)) {
     return driver::Error{
-        "the forces of this run are not the scene's only: a program's law or a topic gave them."};
+        "the forces of this run came from a program or a topic, not from the scene alone."};
   }
   const auto choices = run_choices(recording.info.options);
   if (!choices) return choices.error();
@@ -276,17 +278,15 @@ driver::Result<void> check_repeatable(const Recording& recording, const std::str
   const auto file = scene_of(recording, scene);
   if (!file) return file.error();
   if (scene::text_of(*file) != recording.info.scene_text) {
-    return driver::Error{file->string() +
-                         " is not the scene that was recorded; it has been changed since."};
+    return driver::Error{file->string() + " has changed since the recording."};
   }
   const std::filesystem::path arm = recording.info.arm_file;
   if (!arm.empty() && scene::text_of(arm) != recording.info.arm_text) {
-    return driver::Error{arm.string() +
-                         " is not the arm file that was recorded; it has been changed since."};
+    return driver::Error{arm.string() + " has changed since the recording."};
   }
   if (scene::program_name() != recording.info.program) {
     return driver::Error{"recorded by " + recording.info.program + ", this is " +
-                         scene::program_name() + "; only the same build promises the same bits."};
+                         scene::program_name() + "; only the same build is bit-identical."};
   }
   return {};
 }

@@ -10,7 +10,8 @@
 namespace thimble::session {
 namespace {
 
-/// Reads the forces of a bag on the clock of its positions; none, if it has none and nobody asked.
+/// Reads the forces of a bag on the clock of its positions. Empty if the bag has none and no topic
+/// was requested.
 driver::Result<std::optional<bag::BagTopic>> read_forces(const std::filesystem::path& file,
                                                          const std::string& topic,
                                                          bag::BagTopic& positions) {
@@ -21,7 +22,7 @@ driver::Result<std::optional<bag::BagTopic>> read_forces(const std::filesystem::
     return forces.error();
   }
   if (forces->clock != positions.clock) {
-    // One of both has no stamps.
+    // One of the two topics has no stamps.
     auto again =
         bag::read_bag(file, bag::BagKind::kPositions, positions.name, bag::BagClock::kReceived);
     if (!again) return again.error();
@@ -32,7 +33,7 @@ driver::Result<std::optional<bag::BagTopic>> read_forces(const std::filesystem::
   const double ahead = 1e-9 * static_cast<double>(positions.start_ns - forces->start_ns);
   if (!(ahead <= forces->samples.back().time && -ahead <= positions.samples.back().time)) {
     return driver::Error{file.string() + ": " + positions.name + " and " + forces->name +
-                         " are not of the same time; name topics of one run."};
+                         " do not overlap in time; choose topics of one run."};
   }
   return std::optional(std::move(forces).value());
 }
@@ -45,7 +46,7 @@ driver::Result<BagReplay> replay_bag(const std::filesystem::path& file, const Ba
   if (!positions) return positions.error();
   auto forces = read_forces(file, topics.wrench, *positions);
   if (!forces) return forces.error();
-  std::vector<TrajectoryPoint> recorded;  // forces, as points that move
+  std::vector<TrajectoryPoint> recorded;  // forces, stored as positions
   if (*forces) {
     const double late = 1e-9 * static_cast<double>((*forces)->start_ns - positions->start_ns);
     for (const bag::BagSample& sample : (*forces)->samples) {
@@ -56,9 +57,9 @@ driver::Result<BagReplay> replay_bag(const std::filesystem::path& file, const Ba
   std::size_t hint = 0;
   for (const bag::BagSample& sample : positions->samples) {
     TrajectoryPoint point{.time = sample.time, .p = bag::in_world(topics.axes, sample.value)};
-    if (!(point.p.cwiseAbs().maxCoeff() < 10)) {  // m, as of a trajectory
+    if (!(point.p.cwiseAbs().maxCoeff() < 10)) {  // m, as for a trajectory
       return driver::Error{file.string() + ": " + positions->name +
-                           " is more than 10 m away; expected positions in m."};
+                           " has a position more than 10 m away; expected positions in m."};
     }
     if (!recorded.empty()) {
       point.f = bag::in_world(topics.axes, trajectory_at(recorded, sample.time, hint).p);
@@ -66,7 +67,7 @@ driver::Result<BagReplay> replay_bag(const std::filesystem::path& file, const Ba
     trajectory.push_back(point);
   }
   if (trajectory.size() < 2) {
-    return driver::Error{file.string() + ": " + positions->name + " holds no two positions."};
+    return driver::Error{file.string() + ": " + positions->name + " has fewer than two positions."};
   }
   auto replay = touch_along(trajectory, {}, scene_file);
   if (!replay) return replay.error();

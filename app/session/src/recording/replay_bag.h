@@ -25,9 +25,9 @@ struct BagReplay {
   double error_max = 0;     ///< Largest difference from these forces, N.
 };
 
-/// Moves a probe along the positions of a ROS bag through a scene, without arm or hand, and
-/// compares the forces with those of the bag, interpolated linearly between its messages. The error
-/// says how to fix the problem. Real-time: never from the servo thread.
+/// Moves a probe along the positions of a ROS bag through a scene, without arm or hand. Compares
+/// the forces with those of the bag, which are interpolated linearly between its messages. The
+/// error says how to fix the problem. Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<BagReplay> replay_bag(const std::filesystem::path& bag,
                                                     const BagTopics& topics,
                                                     const std::filesystem::path& scene_file);

@@ -12,7 +12,7 @@ namespace thimble::session {
 namespace {
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  // Exact for small angles too.
+  // Accurate for small angles too.
   return math::atan2(a.cross(b).norm(), a.dot(b));
 }
 
@@ -53,7 +53,7 @@ TrajectoryComparison replay_trajectory(const std::vector<TrajectoryPoint>& traje
     }
     if (!sink) continue;
     driver::TickRecord record = driver::record_of(state, command);
-    record.f_sent_W = record.f_wanted_W;  // no gate stands between
+    record.f_sent_W = record.f_wanted_W;  // there is no gate
     record.stage = driver::DeviceStage::kActive;
     sink(record);
   }

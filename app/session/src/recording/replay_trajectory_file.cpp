@@ -12,16 +12,16 @@
 namespace thimble::session {
 namespace {
 
-/// Takes a trajectory from the frame of an object's mesh file into the world; one that is in the
-/// world already if no object is named.
+/// Transforms a trajectory from the frame of an object's mesh file into the world; unchanged if no
+/// object is named.
 driver::Result<void> into_world(std::vector<TrajectoryPoint>& trajectory, const scene::Scene& scene,
                                 const std::string& frame) {
   if (frame.empty() || frame == "world") return {};
   for (const scene::SceneObject& object : scene.objects) {
     if (object.name != frame) continue;
     if (object.mesh_file.empty() || object.paged) {
-      return driver::Error{"--frame: \"" + frame + "\" has no mesh file in memory; give the " +
-                           "trajectory in the world, in m."};
+      return driver::Error{"--frame: \"" + frame + "\" has no mesh file in memory; use a " +
+                           "trajectory in the world frame, in m."};
     }
     const auto mesh = scene::load_object_mesh(object);
     if (!mesh) return mesh.error();
@@ -69,7 +69,7 @@ driver::Result<TrajectoryReplay> replay_trajectory_file(const std::filesystem::p
                                                         TrajectoryForm form,
                                                         const std::string& frame,
                                                         const std::filesystem::path& scene_file) {
-  // In the frame of a mesh file its unit is that of the file.
+  // In the frame of a mesh file, lengths are in the file's unit.
   if (!frame.empty() && frame != "world") {
     form.metres = 1;
     form.farthest = 1e9;
@@ -78,7 +78,8 @@ driver::Result<TrajectoryReplay> replay_trajectory_file(const std::filesystem::p
   if (!trajectory) return trajectory.error();
   constexpr double kLongest = 86400;  // s
   if (!(trajectory->back().time - trajectory->front().time < kLongest)) {
-    return driver::Error{file.string() + " lasts for more than a day; --time says the unit."};
+    return driver::Error{file.string() +
+                         " lasts more than a day; set the unit of time with --time."};
   }
   auto replay = touch_along(std::move(trajectory).value(), frame, scene_file);
   if (replay) replay->felt.info.device = "trajectory " + file.string();

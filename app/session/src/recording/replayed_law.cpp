@@ -34,7 +34,7 @@ driver::ForceCommand ReplayedLaw::operator()(const driver::DeviceState& state,
   if (knobs_ && turning_) turning_ = knobs_->step(*this, last_, state.dt);
   driver::ForceCommand command = touch_(state);
   if (then.gain < 1) command.f_T_W *= then.gain;
-  // In the order of the run, so that the sum has the same bits (RunLaw).
+  // Same order as in the run, so that the sum is bit-identical (RunLaw).
   if (links_) command.f_T_W += links_->carried(state.q);
   if (weight_ > 0) command.f_T_W += Eigen::Vector3d(0, 0, weight_);
   return command;

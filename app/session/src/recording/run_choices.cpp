@@ -13,7 +13,7 @@
 namespace thimble::session {
 namespace {
 
-/// Reads a number > 0.
+/// Parses a number > 0.
 std::optional<double> positive_number(const std::string& text) {
   double value = 0;
   const auto [end, trouble] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -28,7 +28,7 @@ std::string text_of(const RunChoices& choices) {
   const RunChoices none;
   std::string text;
   if (choices.quality != none.quality) text += "quality: " + choices.quality + "\n";
-  // In the shortest form that reads back to the same bits.
+  // The shortest form that is read back bit-identically.
   if (choices.budget) text += fmt::format("budget: {}\n", *choices.budget);
   if (choices.rate_factor != 1) text += fmt::format("rate_factor: {}\n", choices.rate_factor);
   if (choices.adjusted) text += "adjusted: yes\n";
@@ -52,8 +52,8 @@ driver::Result<RunChoices> run_choices(const std::string& text) {
     } else if (key == "adjusted" && value == "yes") {
       choices.adjusted = true;
     } else {
-      return driver::Error{"the recording holds the option \"" + line +
-                           "\", which this program does not know; use the program that made it."};
+      return driver::Error{"the recording has the unknown option \"" + line +
+                           "\"; use the version of thimble that made the recording."};
     }
   }
   return choices;

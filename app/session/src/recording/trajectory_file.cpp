@@ -15,10 +15,10 @@ namespace thimble::session {
 namespace {
 
 constexpr std::array<std::string_view, 7> kNames{"t", "x", "y", "z", "fx", "fy", "fz"};
-// Catches a file in other units than was said.
+// A larger force means that the file uses other units.
 constexpr double kStrongest = 1e4;  // N
 
-/// Finds which of kNames each column is; -1: left out.
+/// Returns the index in kNames of each column; -1: ignored.
 driver::Result<std::vector<int>> read_columns(const std::string& text) {
   std::vector<int> columns;
   std::array<int, kNames.size()> count{};
@@ -35,12 +35,13 @@ driver::Result<std::vector<int>> read_columns(const std::string& text) {
   const bool places = count[0] == 1 && count[1] == 1 && count[2] == 1 && count[3] == 1;
   const bool forces = count[4] == count[5] && count[5] == count[6] && count[4] <= 1;
   if (!places || !forces) {
-    return driver::Error{"--columns: expected t, x, y and z once each, and fx, fy, fz or none."};
+    return driver::Error{
+        "--columns: expected t, x, y and z once each, and fx, fy and fz once each or not at all."};
   }
   return columns;
 }
 
-/// Reads the numbers of a line; empty if something else stands in it.
+/// Parses the numbers of a line; empty if it contains anything else.
 std::optional<std::vector<double>> numbers_of(std::string line) {
   for (char& c : line) {
     if (c == ',' || c == ';' || c == '\t' || c == '\r') c = ' ';
@@ -82,10 +83,11 @@ driver::Result<std::vector<TrajectoryPoint>> read_trajectory(const std::filesyst
     const bool header = !numbers && !any_line;
     any_line = true;
     if (header) continue;
-    if (!numbers) return wrong("expected numbers alone.");
+    if (!numbers) return wrong("expected only numbers.");
     if (numbers->size() < columns->size()) {
       return wrong("expected " + std::to_string(columns->size()) + " columns (" + form.columns +
-                   "), found " + std::to_string(numbers->size()) + "; --columns says others.");
+                   "), found " + std::to_string(numbers->size()) +
+                   "; set the columns with --columns.");
     }
     std::array<double, kNames.size()> values{};
     for (std::size_t i = 0; i < columns->size(); ++i) {
@@ -94,17 +96,18 @@ driver::Result<std::vector<TrajectoryPoint>> read_trajectory(const std::filesyst
     const TrajectoryPoint point{.time = form.seconds * values[0],
                                 .p = form.metres * Eigen::Vector3d(values[1], values[2], values[3]),
                                 .f = {values[4], values[5], values[6]}};
-    // Written so that NaN is refused.
+    // Written so that NaN is rejected.
     if (!(point.p.cwiseAbs().maxCoeff() < form.farthest && point.f.norm() < kStrongest &&
           std::isfinite(point.time))) {
-      return wrong("is too far away (10 m) or too strong (10 kN); --length says the unit.");
+      return wrong(
+          "is too far away (10 m) or too strong (10 kN); set the unit of length with --length.");
     }
     if (!trajectory.empty() && point.time < trajectory.back().time) {
-      return wrong("goes back in time.");
+      return wrong("the time decreases.");
     }
     if (trajectory.empty() || point.time > trajectory.back().time) trajectory.push_back(point);
   }
-  if (trajectory.size() < 2) return driver::Error{file.string() + ": holds no two points."};
+  if (trajectory.size() < 2) return driver::Error{file.string() + ": has fewer than two points."};
   return trajectory;
 }
 

@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the time as a name that sorts, with milliseconds: faults may come fast.
+/// Returns the time as a name that sorts by time. It includes milliseconds, because faults may
+/// follow each other quickly.
 std::string time_as_name() {
   const auto now = std::chrono::system_clock::now();
   const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
@@ -33,7 +34,7 @@ std::string time_as_name() {
   return name;
 }
 
-/// Deletes the oldest black boxes beyond those that are kept. What cannot be deleted stays.
+/// Deletes the oldest black boxes, so that one more can be kept. Errors are ignored.
 void make_room(const fs::path& folder) {
   std::error_code ignored;
   std::vector<fs::path> files;
@@ -41,7 +42,7 @@ void make_room(const fs::path& folder) {
     if (entry.path().extension() == ".h5") files.push_back(entry.path());
   }
   if (files.size() < kBlackBoxesMax) return;
-  std::sort(files.begin(), files.end());  // by time: names begin with it
+  std::sort(files.begin(), files.end());  // by time, with which the names start
   for (std::size_t i = 0; i + kBlackBoxesMax <= files.size(); ++i) fs::remove(files[i], ignored);
 }
 

@@ -14,7 +14,7 @@ template <class T>
 void add_number(std::string& line, const unsigned char* from) {
   T value;
   std::memcpy(&value, from, sizeof value);
-  std::array<char, 40> text;  // a double's shortest form has 24 characters at most
+  std::array<char, 40> text;  // the shortest form of a double has at most 24 characters
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
   line.append(text.data(), end);
 }
@@ -46,7 +46,7 @@ std::string heading() {
     for (std::size_t k = 0; k < column.width; ++k) {
       if (!line.empty()) line += ',';
       line += column.name;
-      // What belongs to the arm's axes is numbered as they are, vectors have x, y, z.
+      // Values of the arm's axes are numbered 1, 2, 3; vectors have x, y, z.
       if (column.width == 3) line += std::string(".") + (column.by_axis() ? "123" : "xyz")[k];
       if (column.width == 4) line += std::string(".") + "wxyz"[k];
       if (std::strcmp(column.unit, "1") != 0) line += std::string(" [") + column.unit + "]";

@@ -58,7 +58,7 @@ std::vector<ArmLine> lines_of(const driver::DeltaArm& arm, const Vector3d& q,
   return lines;
 }
 
-/// Of an arm that only tells its tip nothing else can be drawn.
+/// Returns only the tip for an arm of unknown geometry.
 std::vector<ArmLine> lines_of(const driver::ToldArm&, const Vector3d&, const Vector3d& p_BT) {
   return {{p_BT}};
 }

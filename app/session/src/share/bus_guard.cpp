@@ -14,17 +14,17 @@ namespace {
 
 struct Guarded {
   std::atomic<std::uintptr_t> begin{0};
-  std::atomic<std::uintptr_t> end{0};  // 0: the place is free
+  std::atomic<std::uintptr_t> end{0};  // 0: unused
   std::atomic<bool> broken{false};
 };
-static_assert(std::atomic<std::uintptr_t>::is_always_lock_free, "A signal handler may not lock.");
+static_assert(std::atomic<std::uintptr_t>::is_always_lock_free,
+              "Atomics in a signal handler must be lock-free.");
 
 std::array<Guarded, BusGuard::kMost> guarded;
 std::uintptr_t page_size = 4096;
 
-/// Puts a page of zeros where one is gone. mmap is no more than a call of the kernel, which changes
-/// nothing that the interrupted code could be in the middle of [as libwayland does for its
-/// buffers].
+/// Replaces a missing page by a page of zeros. mmap is a plain system call, so it is safe in a
+/// signal handler [libwayland does the same for its buffers].
 void on_bus_error(int number, siginfo_t* info, void*) {
   const auto address = reinterpret_cast<std::uintptr_t>(info->si_addr);
   for (Guarded& one : guarded) {
@@ -37,7 +37,7 @@ void on_bus_error(int number, siginfo_t* info, void*) {
     one.broken.store(true);
     return;
   }
-  signal(number, SIG_DFL);  // the fault comes again and ends the process
+  signal(number, SIG_DFL);  // the access fails again and ends the process
 }
 
 void install() {

@@ -9,8 +9,8 @@
 namespace thimble::session {
 namespace {
 
-// What a viewer shades smooth where the scene names no crease: as much as curved meshes of everyday
-// things have between neighbours. Chosen.
+// Default crease angle of viewers, if the scene gives none. Chosen: the largest angle between
+// neighbouring triangles in curved meshes of everyday objects.
 constexpr double kCreaseDrawn = std::numbers::pi / 4;
 
 }  // namespace
@@ -33,7 +33,7 @@ SharedKind kind_of(const scene::SceneObject& object) {
   return object.paged ? SharedKind::kPaged : SharedKind::kMesh;
 }
 
-// Returns the names of an object's effects of one group, as the scene calls them.
+// Returns the names of an object's effects of one group, as in the scene file.
 std::string names_of(const scene::SceneObject& object, std::string_view group) {
   std::string names;
   for (const render::EffectPlan& effect : object.effects) {
@@ -44,7 +44,7 @@ std::string names_of(const scene::SceneObject& object, std::string_view group) {
   return names;
 }
 
-// Returns how many edges of an object may be split while it is felt.
+// Returns the largest number of edges of an object that may be split during the run.
 std::size_t splits_most(const scene::SceneObject& object, const render::ObjectTouch& touch) {
   return object.body.shape.named() && touch.shape()->refines() ? touch.shape()->splits_left() : 0;
 }

@@ -13,15 +13,16 @@ driver::Result<std::size_t> find_knob(const std::vector<SharedScene::Knob>& knob
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     const SharedScene::Knob& knob = knobs[i];
     if (knob.name == name) {
-      // Written so that NaN is refused.
+      // Written so that NaN is rejected.
       if (value >= knob.least && value <= knob.most) return i;
-      return driver::Error{fmt::format("{} may be {:g} to {:g} {}, found {:g}; nothing was turned.",
-                                       name, knob.least, knob.most, knob.unit, value)};
+      return driver::Error{
+          fmt::format("{} must be {:g} to {:g} {}, found {:g}; the knob is unchanged.", name,
+                      knob.least, knob.most, knob.unit, value)};
     }
     known += "\n    " + knob.name;
   }
   return driver::Error{"the run has no knob \"" + name + "\"" +
-                       (known.empty() ? "." : "; it has" + known)};
+                       (known.empty() ? "." : "; its knobs are" + known)};
 }
 
 driver::Result<void> turn_knob(SharedReader& reader, const std::string& order) {

@@ -10,7 +10,7 @@ namespace thimble::session {
 LiveControl::LiveControl(const scene::Scene& scene, render::SceneTouch& touch,
                          scene::ArmSimulation* simulation, bool real_time)
     : simulation_(simulation), real_time_(real_time), knobs_(scene, touch) {
-  hand_.p_WH.fill(std::numeric_limits<double>::quiet_NaN());  // equals nothing that is asked for
+  hand_.p_WH.fill(std::numeric_limits<double>::quiet_NaN());  // differs from every request
 }
 
 void LiveControl::add_simulation(scene::ArmSimulation* simulation) {
@@ -40,11 +40,11 @@ void LiveControl::begin_tick(const driver::DeviceState& state) noexcept {
 
 void LiveControl::take(const driver::TickRecord& record) noexcept {
   last_ = record;
-  if (shared_ == nullptr) return;  // nobody has joined: the session is driven by hand
+  if (shared_ == nullptr) return;  // not connected: the session is stepped directly
   const bool paused = shared_->pause_asked();
   if (paused != paused_) {
     paused_ = paused;
-    steps_ = shared_->steps_asked();  // those of before are let be
+    steps_ = shared_->steps_asked();  // earlier requests are dropped
     shared_->set_state(paused ? RunState::kPaused : RunState::kRunning);
     if (simulation_ != nullptr && real_time_) simulation_->hold(paused);
     for (scene::ArmSimulation* other : others_) {
@@ -66,7 +66,8 @@ void LiveControl::lead_hand() noexcept {
 
 void LiveControl::wait_while_paused() noexcept {
   while (shared_->pause_asked() && !stop_->load(std::memory_order_relaxed)) {
-    // Counts wrap as they are told to; what cannot be meant is let be.
+    // The difference of unsigned counters is valid after a wrap. A larger one is invalid and is
+    // dropped.
     const std::uint64_t wanted = shared_->steps_asked() - steps_;
     if (wanted > kStepsMost) steps_ += wanted;
     if (wanted > 0 && wanted <= kStepsMost) {

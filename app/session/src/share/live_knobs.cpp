@@ -8,8 +8,8 @@
 namespace thimble::session {
 namespace {
 
-// Friction follows the force of the surface by a coefficient of at most sqrt 3: the two together
-// change by no more than twice the first.
+// Friction is at most sqrt(3) times the force of the surface, at a right angle to it. So their sum
+// changes by at most twice the change of the surface's force.
 constexpr double kWithFriction = 2;
 
 double length(const std::array<double, 3>& v) noexcept {
@@ -30,7 +30,7 @@ LiveKnobs::LiveKnobs(const scene::Scene& scene, render::SceneTouch& touch) {
                 .setting = setting,
                 .now = setting.value,
                 .target = setting.value};
-      // Two effects of a kind on one object.
+      // An object may have two effects of one kind; their names get numbers.
       const auto taken = [&](const std::string& name) {
         return std::any_of(knobs_.begin(), knobs_.end(),
                            [&](const Knob& other) { return other.name == name; });
@@ -67,7 +67,8 @@ bool LiveKnobs::step(KnobRequests& requests, const FeltTick& last, double dt) no
     const double wanted = requests.knob_wanted(i).value_or(knobs_[i].target);
     if (wanted == knobs_[i].target) continue;
     turning = true;
-    if (change_.setting != driver::TickRecord::kNoSetting) break;  // the next tick begins with it
+    if (change_.setting != driver::TickRecord::kNoSetting)
+      break;  // the next tick starts this change
     knobs_[i].target = wanted;
     change_.setting = static_cast<std::int16_t>(i);
     change_.value = wanted;
@@ -86,11 +87,11 @@ bool LiveKnobs::step(KnobRequests& requests, const FeltTick& last, double dt) no
         sensitivity.per_force * length(last.f_wanted_W) +
         (last.in_contact ? sensitivity.per_stiffness * stiffness : 0) + sensitivity.always;
     double most = (knob.setting.most - knob.setting.least) * dt / kTurnTime;
-    // Written so that NaN turns nothing.
+    // Written so that NaN changes nothing.
     if (!(newtons >= 0)) continue;
     if (newtons > 0) most = std::min(most, kForceRate / kWithFriction * dt / newtons);
     const double way = knob.target - knob.now;
-    // Ends on the very value that is wanted.
+    // Ends exactly at the requested value.
     knob.now = std::abs(way) <= most ? knob.target : knob.now + std::copysign(most, way);
     knob.setting.set(knob.setting.stage, knob.now);
     requests.store_knob(i, knob.now);

@@ -19,13 +19,14 @@ bool RunAttachment::step() {
     return name_.empty() || run.name == name_;
   });
   if (found == runs.end()) {
-    // One that was killed is shown as it was left, until the next run clears it away.
+    // A run that was killed is shown in its last state until the next run removes its memory.
     if (reader_ || name_.empty()) return false;
     auto left = SharedReader::attach(name_);
     if (left) reader_ = std::move(left).value();
     return reader_ != nullptr;
   }
-  if (reader_ && reader_->scene().began_ns == found->began_ns) return false;  // the ended one
+  if (reader_ && reader_->scene().began_ns == found->began_ns)
+    return false;  // the run that has ended
   auto reader = SharedReader::attach(found->name);
   trouble_ = reader ? "" : reader.error().message;
   if (!reader) return false;
@@ -36,7 +37,7 @@ bool RunAttachment::step() {
 
 bool RunAttachment::over() const {
   if (!reader_ || reader_->state() != RunState::kEnded) return false;
-  // As long as it has its name it may give that to the next one.
+  // While its name exists, the next run may still take it over.
   return reader_->died() || !run_name_taken(name_);
 }
 
@@ -47,7 +48,7 @@ std::string RunAttachment::notice() const {
                          : "Waiting for a run named " + name_ + ".";
   }
   if (reader_->state() != RunState::kEnded) return {};
-  const std::string next = " The next one named " + name_ + " is shown when it begins.";
+  const std::string next = " The next one named " + name_ + " is shown when it starts.";
   if (reader_->died()) return "The run's process has died." + next;
   return "The run has ended." + next;
 }

@@ -14,7 +14,7 @@ void RunSharing::take(const driver::TickRecord& record) noexcept {
       shared_.store_vertex(one.first + static_cast<std::size_t>(move.vertex), move.p_W);
     }
     for (const render::EdgeSplit& split : one.shape->splits()) {
-      // A tick in which the scene is not felt shows those of the last one again.
+      // A tick in which the scene is not computed repeats the splits of the last one.
       if (split.vertex != one.vertices) continue;
       const auto vertex = static_cast<std::size_t>(one.vertices++);
       shared_.store_vertex(one.first + vertex, one.shape->place(split.vertex));

@@ -11,10 +11,10 @@
 namespace thimble::session {
 namespace {
 
-// What a viewer's plots can look back on, and how much memory that may take: 32 MB. Chosen.
+// Time that a viewer's plots can show, and largest number of ticks in memory (32 MB). Chosen.
 constexpr double kShownSeconds = 8;
 constexpr std::size_t kShownTicksMost = 100'000;
-constexpr int kRunsOfAScene = 100;  // at the same time; chosen
+constexpr int kRunsOfAScene = 100;  // largest number of simultaneous runs of one scene; chosen
 
 }  // namespace
 
@@ -38,7 +38,7 @@ driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const L
   const std::string asked = options.share_name.empty() ? setup.scene().name : options.share_name;
   const std::string name = options.share_out ? run_name_of(asked) : "";
   auto shared = SharedRun::create(name, scene, ring);
-  // Where the scene gives the name, a second run of it is another one.
+  // If the name is that of the scene, a second run of the scene gets a number.
   for (int number = 2; !shared && options.share_name.empty() && number < kRunsOfAScene; ++number) {
     if (!run_name_taken(name)) break;
     std::string next = name;

@@ -10,7 +10,7 @@
 namespace thimble::session {
 namespace {
 
-// What of each build is drawn, one line per build.
+// Returns the parameters of each geometry that are needed for drawing.
 std::vector<double*> numbers_of(driver::SerialArm& g) {
   return {&g.height, &g.length_b, &g.length_c};
 }
@@ -29,7 +29,7 @@ std::vector<double*> numbers_of(driver::ArmGeometry& geometry) {
   return std::visit([](auto& build) { return numbers_of(build); }, geometry);
 }
 
-/// Returns the build at a place of ArmGeometry, without any lengths.
+/// Returns the geometry at an index of ArmGeometry, with default lengths.
 template <std::size_t... Places>
 driver::ArmGeometry build_at(std::size_t place, std::index_sequence<Places...>) {
   driver::ArmGeometry geometry;

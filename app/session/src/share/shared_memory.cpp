@@ -21,10 +21,10 @@
 namespace thimble::session {
 namespace {
 
-// Where Linux shows POSIX shared memory as files [shm_overview(7)].
+// Folder in which Linux shows POSIX shared memory as files [shm_overview(7)].
 constexpr const char* kFolder = "/dev/shm";
-// After the name of a run whose memory takes that name when it is complete. No run's name has a
-// dot, so what follows the first dot of a file's name is no part of it.
+// Suffix of memory that takes a run's name once it is complete. Run names contain no dot, so the
+// first dot of a file name ends the run's name.
 constexpr const char* kNext = ".next";
 
 std::string prefix() {
@@ -49,9 +49,9 @@ bool is_own(const struct stat& status) {
   return status.st_uid == geteuid() && (status.st_mode & 077) == 0 && S_ISREG(status.st_mode);
 }
 
-/// Opens a file of shared memory if it is this user's own; -1 otherwise. Any user may put anything
-/// into the folder under any name, so nothing is waited for (a FIFO, a lease), followed (a link) or
-/// believed before the open file itself has been looked at.
+/// Opens a file of shared memory if it belongs to this user; returns -1 otherwise. Any user may put
+/// any file into the folder. Therefore it does not wait (FIFO, lease) or follow links, and checks
+/// the open file itself before using it.
 int open_own(const std::string& file, struct stat& status) {
   const int opened =
       ::open(path_of(file).c_str(), O_RDWR | O_NONBLOCK | O_NOFOLLOW | O_NOCTTY | O_CLOEXEC);
@@ -62,11 +62,11 @@ int open_own(const std::string& file, struct stat& status) {
   return -1;
 }
 
-/// One file of shared memory of this user.
+/// File of shared memory of this user.
 struct Segment {
   std::string file;
   std::string run;
-  std::string end;  // of the file's name, from the first dot on
+  std::string end;  // end of the file's name, from the first dot on
 };
 
 /// Lists the shared memory of this user's runs.
@@ -92,13 +92,13 @@ bool is_next(const Segment& segment) {
   return segment.end.starts_with(kNext);
 }
 
-/// Removes a segment if the process that made it is gone; returns whether its place is free.
+/// Removes a segment if the process that created it has died. Returns whether its name is free.
 bool remove_if_dead(const std::string& file) {
   struct stat status {};
   const int opened = open_own(file, status);
   if (opened < 0) return errno == ENOENT;
-  // The lock is held meanwhile, so that no two processes do this: the second one would remove
-  // what has taken the place since.
+  // Holds the lock meanwhile, so that only one process does this. A second one could remove a new
+  // segment of the same name.
   bool removed = false;
   if (driver::lock_byte(opened, SharedMemory::kMakerByte)) {
     struct stat now {};
@@ -111,7 +111,7 @@ bool remove_if_dead(const std::string& file) {
   return removed;
 }
 
-/// Returns a word that no other user can foresee.
+/// Returns a random word that other users cannot predict.
 std::string unforeseen() {
   std::uint64_t number = 0;
   if (getrandom(&number, sizeof number, 0) != sizeof number) number = std::random_device{}();
@@ -124,7 +124,7 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::map(int file, std::s
                                                                 Place place, bool made) {
   void* at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
   if (at == MAP_FAILED) {
-    const auto error = trouble("Shared memory cannot be mapped");
+    const auto error = trouble("Cannot map shared memory");
     close(file);
     if (made && !place.file.empty()) unlink(path_of(place.file).c_str());
     return error;
@@ -144,10 +144,10 @@ driver::Result<void> SharedMemory::take_name(SharedMemory& before) {
   const bool is_there = lstat(path_of(before.name_).c_str(), &there) == 0;
   if (is_there && (fstat(before.file_, &own) != 0 || own.st_dev != there.st_dev ||
                    own.st_ino != there.st_ino)) {
-    return driver::Error{"Another run has taken the name \"" + before.run_ +
-                         "\"; give this one another --name."};
+    return driver::Error{"Another run uses the name \"" + before.run_ +
+                         "\"; choose another name with --name."};
   }
-  // In one step for all readers [rename(2)].
+  // Atomic for all readers [rename(2)].
   if (rename(path_of(name_).c_str(), path_of(before.name_).c_str()) != 0) {
     return trouble("The name \"" + before.run_ + "\" cannot be taken over");
   }
@@ -161,7 +161,7 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create(const std::st
   for (const Segment& segment : segments()) {
     if (segment.run != run || is_next(segment) || remove_if_dead(segment.file)) continue;
     return driver::Error{"A run named \"" + run +
-                         "\" is already shown; end it, or give this one another --name."};
+                         "\" is already shared; end it, or choose another name with --name."};
   }
   return create_as(run, "", bytes);
 }
@@ -169,22 +169,22 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create(const std::st
 driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_as(const std::string& run,
                                                                       const std::string& end,
                                                                       std::size_t bytes) {
-  // Without a name first: it is locked before any process can find it.
+  // Created without a name first, so that it is locked before any process can find it.
   const int file = ::open(kFolder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (file < 0) return trouble("Shared memory cannot be made in " + std::string(kFolder));
+  if (file < 0) return trouble("Cannot create shared memory in " + std::string(kFolder));
   fchmod(file, 0600);
   driver::lock_byte(file, kMakerByte);
-  // Reserves the pages too: where memory is short, that is said here and not by SIGBUS in a tick.
+  // Also reserves the pages, so that a lack of memory is reported here and not by SIGBUS in a tick.
   if (const int full = posix_fallocate(file, 0, static_cast<off_t>(bytes)); full != 0) {
     errno = full;
     const auto error =
-        trouble("Shared memory of " + std::to_string(bytes) + " bytes cannot be had");
+        trouble("Cannot allocate " + std::to_string(bytes) + " bytes of shared memory");
     close(file);
     return error;
   }
   const std::string own = "/proc/self/fd/" + std::to_string(file);
   Place place{.file = prefix() + run + end, .run = run};
-  /// Gives the memory its name; returns 0 or an errno.
+  /// Links the memory to its name; returns 0 or an errno.
   const auto put = [&] {
     const bool done = linkat(AT_FDCWD, own.c_str(), AT_FDCWD, path_of(place.file).c_str(),
                              AT_SYMLINK_FOLLOW) == 0;
@@ -194,8 +194,8 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_as(const std:
   if (failed == EEXIST && remove_if_dead(place.file)) failed = put();
   if (failed == EEXIST) {
     struct stat status {};
-    // Another run was quicker; or it is no memory of this user, and no user can foresee the next
-    // name.
+    // Either another run of this user was faster, or the file belongs to another user. In the
+    // latter case uses a name that other users cannot predict.
     const bool ours = lstat(path_of(place.file).c_str(), &status) == 0 && is_own(status);
     if (!ours) {
       place.file += '.' + unforeseen();
@@ -205,9 +205,9 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_as(const std:
   if (failed == 0) return map(file, bytes, std::move(place), true);
   close(file);
   errno = failed;
-  if (failed != EEXIST) return trouble("Shared memory " + path_of(place.file) + " cannot be made");
+  if (failed != EEXIST) return trouble("Cannot create shared memory " + path_of(place.file));
   return driver::Error{"A run named \"" + run +
-                       "\" is already shown; end it, or give this one another --name."};
+                       "\" is already shared; end it, or choose another name with --name."};
 }
 
 std::string SharedMemory::path() const {
@@ -216,11 +216,11 @@ std::string SharedMemory::path() const {
 
 driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_nameless(std::size_t bytes) {
   const int file = memfd_create("thimble", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  if (file < 0) return trouble("Shared memory cannot be made");
+  if (file < 0) return trouble("Cannot create shared memory");
   if (ftruncate(file, static_cast<off_t>(bytes)) != 0 ||
       fcntl(file, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW) != 0) {
     const auto error =
-        trouble("Shared memory of " + std::to_string(bytes) + " bytes cannot be had");
+        trouble("Cannot allocate " + std::to_string(bytes) + " bytes of shared memory");
     close(file);
     return error;
   }
@@ -232,7 +232,7 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::open(const std::stri
   struct stat status {};
   int file = -1;
   Place place{.file = {}, .run = run};
-  // A live run before one that was killed and is still there.
+  // Prefers a live run to the remains of one that was killed.
   for (const Segment& segment : segments()) {
     if (segment.run != run || is_next(segment)) continue;
     struct stat found {};
@@ -251,14 +251,14 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::open(const std::stri
   }
   if (file < 0) {
     return driver::Error{"No run named \"" + run +
-                         "\" is shown; `thimble view --list` tells which are."};
+                         "\" is shared; list the shared runs with `thimble view --list`."};
   }
   const auto bytes = static_cast<std::uint64_t>(status.st_size);
   if (bytes < kSharedTablesOffset || bytes > kSharedBytesMost) {
     close(file);
-    return driver::Error{"What is shared as \"" + run +
-                         "\" is not a run of this version of thimble; end the run and start it "
-                         "with the same thimble as the viewer."};
+    return driver::Error{"The shared memory \"" + run +
+                         "\" is not a run of this version of thimble; restart the run with the "
+                         "version of the viewer."};
   }
   return map(file, static_cast<std::size_t>(bytes), std::move(place), false);
 }
@@ -266,7 +266,7 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::open(const std::stri
 driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::again() const {
   const std::string own = "/proc/self/fd/" + std::to_string(file_);
   const int file = ::open(own.c_str(), O_RDWR | O_CLOEXEC);
-  if (file < 0) return trouble("Shared memory cannot be mapped once more");
+  if (file < 0) return trouble("Cannot map shared memory again");
   return map(file, bytes_.size(), {.file = name_, .run = run_}, false);
 }
 
@@ -281,7 +281,7 @@ void SharedMemory::remove_name() {
   const std::string path = path_of(name_);
   struct stat own {};
   struct stat there {};
-  // What another run has put there since this one's was removed stays.
+  // Removes only its own file, not one that another run has created since.
   if (!name_.empty() && made_ && fstat(file_, &own) == 0 && lstat(path.c_str(), &there) == 0 &&
       own.st_dev == there.st_dev && own.st_ino == there.st_ino) {
     unlink(path.c_str());
@@ -313,7 +313,7 @@ std::vector<RunningRun> running_runs() {
     const int file = open_own(segment.file, status);
     if (file < 0) continue;
     RunningRun run{.name = segment.run};
-    // By reading: mapping needs a size that can be trusted.
+    // Reads the value, because mapping requires a trusted size.
     std::int64_t began_ns = 0;
     const auto got = pread(file, &began_ns, sizeof began_ns, offsetof(SharedHead, began_ns));
     if (got == static_cast<ssize_t>(sizeof began_ns)) run.began_ns = began_ns;

@@ -14,7 +14,8 @@
 namespace thimble::session {
 namespace {
 
-/// Makes a bool of whatever byte was copied into one: any but 0 and 1 must never be read as a bool.
+/// Makes a bool valid after any byte was copied into it: reading a value other than 0 and 1 as a
+/// bool is undefined.
 void mend(bool& value) noexcept {
   unsigned char byte = 0;
   std::memcpy(&byte, &value, 1);
@@ -46,7 +47,7 @@ driver::Result<std::unique_ptr<SharedReader>> SharedReader::attach(const std::st
     const auto runs = running_runs();
     if (runs.empty()) {
       return driver::Error{
-          "No run is shown; start one with `thimble run SCENE --view`, or wait with `thimble view "
+          "No run is shared; start one with `thimble run SCENE --view`, or wait with `thimble view "
           "NAME`."};
     }
     chosen = runs.front().name;
@@ -85,7 +86,7 @@ SharedReader::SharedReader(std::unique_ptr<SharedMemory> memory, std::span<std::
 
 SharedReader::~SharedReader() {
   if (!place_) return;
-  // A viewer that leaves leaves its pause to the others; one that dies does not.
+  // The pause of a viewer that exits remains; the pause of one that dies ends.
   std::uint32_t own = static_cast<std::uint32_t>(*place_) + 1;
   live_->requests.pause.compare_exchange_strong(own, kPausedByNobody);
   live_->requests.viewers[*place_].store(0);
@@ -94,8 +95,7 @@ SharedReader::~SharedReader() {
 
 void SharedReader::sign_in() noexcept {
   if (!memory_) return;
-  // First the places that are free; then those of viewers that died, where the run has not yet
-  // cleared them.
+  // First tries free places, then places of viewers that died and that the run has not cleared yet.
   for (const bool cleared : {true, false}) {
     for (std::size_t place = 0; place < kViewersMost; ++place) {
       auto& viewer = live_->requests.viewers[place];
@@ -121,7 +121,7 @@ bool SharedReader::died() const {
 }
 
 bool SharedReader::newest(driver::TickRecord& record) const noexcept {
-  // The writer may overtake this in a short ring; then there is a newer one.
+  // In a short ring the writer may overwrite this tick meanwhile; then there is a newer one.
   for (int attempt = 0; attempt < 100; ++attempt) {
     const std::uint64_t stored = live_->ticks.load(std::memory_order_acquire);
     if (stored == 0) return false;
@@ -283,7 +283,8 @@ bool SharedReader::sound(driver::TickRecord& record) const noexcept {
   mend(record.fresh);
   mend(record.has_gripper);
   mend(record.home_needed);
-  // A faulty arm may tell of places that are no numbers; its fault must be seen, they must not.
+  // A faulty arm may report positions that are not finite. They are replaced by 0, so that its
+  // fault is still shown.
   for (auto* numbers : {&record.q, &record.p_WT, &record.v_WT, &record.p_WP, &record.n_W,
                         &record.f_wanted_W, &record.f_sent_W, &record.heat}) {
     for (double& x : *numbers) x = std::isfinite(x) ? x : 0;

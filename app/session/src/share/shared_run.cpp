@@ -24,15 +24,15 @@ void put(const std::string& text, SharedText<N>& to) {
   std::copy_n(text.begin(), std::min(text.size(), N - 1), to.begin());
 }
 
-/// Stores nothing where a viewer was killed in writing: half a request is none. Precondition:
-/// no viewer is writing now.
+/// Clears a request that a viewer did not finish because it was killed. Precondition: no viewer is
+/// writing now.
 template <class T>
 void make_whole(driver::Snapshot<T>& snapshot) noexcept {
   T value;
   if (snapshot.count() > 0 && !snapshot.load(value, 1)) snapshot.store({});
 }
 
-/// Finds where every table goes, and how long the whole is.
+/// Sets the position of every table in `head`; returns the total size.
 std::uint64_t lay_out(const SharedScene& scene, std::size_t ring_ticks, SharedHead& head) {
   std::uint64_t end = kSharedTablesOffset;
   const auto lay = [&end](SharedTable& table, std::size_t count, std::size_t size) {
@@ -99,7 +99,7 @@ driver::Result<std::unique_ptr<SharedRun>> SharedRun::make(const std::string& na
                                                            const SharedScene& scene,
                                                            std::size_t ring_ticks) {
   if (scene.objects.size() > kObjectsMost) {
-    return driver::Error{"A scene of more than " + std::to_string(kObjectsMost) +
+    return driver::Error{"A scene with more than " + std::to_string(kObjectsMost) +
                          " objects cannot be shown; run it with --no-view."};
   }
   SharedHead head{};
@@ -116,7 +116,7 @@ driver::Result<std::unique_ptr<SharedRun>> SharedRun::make(const std::string& na
 
 void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   const std::span<std::byte> memory = memory_->bytes();
-  // Every page is there and touched before the first tick.
+  // Touches every page before the first tick.
   std::memset(memory.data(), 0, memory.size());
   head_ = new (memory.data()) SharedHead{};
   head_->pid = getpid();
@@ -204,7 +204,7 @@ SharedRun::~SharedRun() {
 }
 
 void SharedRun::store_tick(const driver::TickRecord& record) noexcept {
-  // Where the arm goes by the time of the world, its loop goes on in a pause; nothing is lost then.
+  // In real time the loop continues during a pause; periods skipped then are not counted as missed.
   const bool idle = head_->wall_clock == 1 && live_->state.load(std::memory_order_relaxed) ==
                                                   static_cast<std::uint32_t>(RunState::kPaused);
   if (idle) {
@@ -277,7 +277,8 @@ std::optional<SharedRun::RecordOrder> SharedRun::record_order_after(std::uint64_
   RecordOrder order{.number = newest, .record = newest % 2 == 1, .path = {}};
   if (!order.record) return order;
   SharedText<1024> path{};
-  // Half a path is none: another viewer writes it, or has died in that and watch_viewers ends it.
+  // An incomplete path is ignored: a viewer is still writing it, or has died and watch_viewers
+  // clears it.
   if (!live_->requests.record_path.load(path)) return {};
   order.path.assign(path.data(), strnlen(path.data(), path.size() - 1));
   return order;
@@ -299,7 +300,8 @@ void SharedRun::set_pace(double speed, bool loop) noexcept {
 
 void SharedRun::close() noexcept {
   live_->closed.store(1);
-  // Pairs with SharedReader::heard: of a request and this, one of the two sides sees the other.
+  // Pairs with SharedReader::heard: either this sees the request, or the viewer sees that the run
+  // is closed.
   std::atomic_thread_fence(std::memory_order_seq_cst);
 }
 
@@ -337,7 +339,7 @@ bool SharedRun::watch_viewers() noexcept {
     std::uint64_t pid = viewer.load();
     if (pid != 0 && !is_viewer_alive(place)) viewer.compare_exchange_strong(pid, 0);
   }
-  // A viewer that has the turn is alive, and ends what it has begun.
+  // If a viewer holds the turn, it is alive and will finish its request.
   if (memory_->lock(kTurnByte)) {
     make_whole(live_->requests.restart);
     make_whole(live_->requests.record_path);
@@ -351,10 +353,10 @@ void SharedRun::release_hand() noexcept {
   SharedHand seen;
   if (live_->requests.hand.load(seen, 1)) {
     last_hand_ = seen;
-    // A viewer without a place is number 0.
+    // A viewer without a place has number 0.
     if (seen.active != 1 || is_viewer_alive(seen.viewer - 1)) return;
   } else if (live_->requests.hand.count() == 0) {
-    return;  // no viewer has led it
+    return;  // no viewer has moved the hand
   }
   last_hand_.active = 0;
   live_->requests.hand.store(last_hand_);

@@ -24,15 +24,15 @@ namespace thimble::session {
 /// requests, and never waits.
 class SharedRun final : public KnobRequests {
  public:
-  /// Creates the memory under `name`, or without a name for a viewer in this process if it is
-  /// empty, and writes the constant data of the scene. Sets pid, times and tables of `scene`. The
+  /// Creates the memory and writes the constant data of the scene. If `name` is empty, the memory
+  /// has no name and is for a viewer in this process. Sets pid, times and tables of `scene`. The
   /// ring has `ring_ticks` entries (> 0). The error is that of SharedMemory. Real-time: never from
   /// the servo thread.
   static driver::Result<std::unique_ptr<SharedRun>> create(const std::string& name,
                                                            const SharedScene& scene,
                                                            std::size_t ring_ticks);
-  /// As above, for a run that follows one that is over. It takes the name of the previous run, if
-  /// any, once it is complete, so that viewers find a run of that name at all times.
+  /// As above, for a run that follows one that is over. Once it is complete, it takes the name of
+  /// the previous run, if any. So viewers find a run of that name at all times.
   static driver::Result<std::unique_ptr<SharedRun>> create_next(SharedRun& before,
                                                                 const SharedScene& scene,
                                                                 std::size_t ring_ticks);

@@ -11,13 +11,12 @@ namespace thimble::session {
 namespace {
 
 driver::Error broken(const std::string& what) {
-  return driver::Error{"The run's shared memory is damaged (" + what +
-                       "); end the run and start it again."};
+  return driver::Error{"The run's shared memory is damaged (" + what + "); restart the run."};
 }
 
 template <std::size_t N>
 std::string text_of(const SharedText<N>& text) {
-  // Whatever is not to be printed would let a name speak to the terminal.
+  // Replaces control characters, which could control the terminal.
   std::string result(text.data(), strnlen(text.data(), N - 1));
   for (char& c : result) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
@@ -29,13 +28,14 @@ bool within(std::uint64_t first, std::uint64_t count, std::uint64_t all) {
   return first <= all && count <= all - first;
 }
 
-/// Returns whether a table of things of `size` lies whole in the memory, behind what is fixed.
+/// Returns whether a table with elements of `size` bytes is completely within the memory, after the
+/// fixed part.
 bool lies_in(const SharedTable& table, std::size_t size, std::uint64_t total) {
   return table.offset % 64 == 0 && table.offset >= kSharedTablesOffset && table.offset <= total &&
          table.count <= (total - table.offset) / size;
 }
 
-/// Copies a table. Precondition: it lies in the memory.
+/// Copies a table. Precondition: it is within the memory.
 template <class T>
 std::vector<T> copy_of(std::span<const std::byte> memory, const SharedTable& table) {
   std::vector<T> copy(table.count);
@@ -45,8 +45,8 @@ std::vector<T> copy_of(std::span<const std::byte> memory, const SharedTable& tab
   return copy;
 }
 
-/// Mixes bytes into a hash: FNV-1a, but eight bytes a step, so that a mesh of a million triangles
-/// takes milliseconds [Fowler, Noll, Vo; RFC 9923].
+/// Mixes bytes into a hash: FNV-1a, but with eight bytes per step, so that a mesh of a million
+/// triangles takes milliseconds [Fowler, Noll, Vo; RFC 9923].
 std::uint64_t mix_bytes(std::uint64_t hash, std::span<const std::byte> bytes) noexcept {
   constexpr std::uint64_t kPrime = 0x100000001b3;
   std::size_t i = 0;
@@ -54,7 +54,7 @@ std::uint64_t mix_bytes(std::uint64_t hash, std::span<const std::byte> bytes) no
     std::uint64_t word = 0;
     std::memcpy(&word, bytes.data() + i, 8);
     hash = (hash ^ word) * kPrime;
-    hash ^= hash >> 32;  // so that high bits reach low ones too
+    hash ^= hash >> 32;  // so that high bits also affect low ones
   }
   for (; i < bytes.size(); ++i) hash = (hash ^ std::to_integer<std::uint64_t>(bytes[i])) * kPrime;
   return hash;
@@ -83,7 +83,7 @@ bool take_arm(const SharedArm& shared, SharedScene::Arm& arm) {
   return true;
 }
 
-/// Checks an object against the tables that it has parts of.
+/// Validates an object against the tables to which it refers.
 bool take_object(const SharedObject& shared, const SharedHead& head,
                  const std::vector<SharedTriangle>& triangles, SharedScene::Object& object) {
   if (shared.kind > static_cast<std::uint32_t>(SharedKind::kPaged) || shared.moves > 1 ||
@@ -125,7 +125,7 @@ bool take_object(const SharedObject& shared, const SharedHead& head,
 }
 
 bool take_knob(const SharedKnob& shared, SharedScene::Knob& knob) {
-  // Written so that NaN is refused.
+  // Written so that NaN is rejected.
   if (!(shared.least < shared.most && shared.initial >= shared.least &&
         shared.initial <= shared.most && std::isfinite(shared.most - shared.least))) {
     return false;
@@ -134,7 +134,7 @@ bool take_knob(const SharedKnob& shared, SharedScene::Knob& knob) {
   return true;
 }
 
-/// Copies the head byte by byte, but for `ready`, which others may write at this moment.
+/// Copies the bytes of the head, except `ready`, which another process may be writing.
 void copy_head(std::span<const std::byte> memory, SharedHead& head) {
   constexpr std::size_t kAfter = sizeof head.ready;
   auto* to = reinterpret_cast<std::byte*>(&head);
@@ -163,22 +163,21 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
   if (memory.size() < 16) return broken("it is too short");
   const auto& in_memory = *reinterpret_cast<const SharedHead*>(memory.data());
   const std::uint64_t ready = in_memory.ready.load(std::memory_order_acquire);
-  if (ready == 0) return driver::Error{"The run is still loading; try again in a moment."};
-  if (ready != kSharedReady) return broken("it does not begin as a run does");
-  // Before anything else: what follows may mean something else in another build.
+  if (ready == 0) return driver::Error{"The run is still loading; try again shortly."};
+  if (ready != kSharedReady) return broken("its header is invalid");
+  // Checked first, because the remaining data may have another layout in another build.
   std::uint64_t layout = 0;
   std::memcpy(&layout, memory.data() + offsetof(SharedHead, layout), sizeof layout);
   if (layout != shared_layout_hash()) {
-    return driver::Error{"The run shares memory of layout " + std::to_string(layout) +
-                         ", this viewer reads layout " + std::to_string(shared_layout_hash()) +
-                         ": they come from different builds of thimble. Start both from the same "
-                         "build."};
+    return driver::Error{"The run uses memory layout " + std::to_string(layout) +
+                         ", this viewer layout " + std::to_string(shared_layout_hash()) +
+                         ": they are different builds of thimble. Use the same build for both."};
   }
   if (memory.size() < kSharedTablesOffset) return broken("it is too short");
   SharedHead head{};
   copy_head(memory, head);
   const std::uint64_t total = memory.size();
-  if (head.total_bytes != total) return broken("its size is not what it says");
+  if (head.total_bytes != total) return broken("its size is wrong");
   if (!lies_in(head.objects, sizeof(SharedObject), total) ||
       !lies_in(head.knobs, sizeof(SharedKnob), total) ||
       !lies_in(head.vertices, sizeof(SharedVertex), total) ||
@@ -187,7 +186,7 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
       !lies_in(head.shaped, sizeof(SharedShaped), total) ||
       !lies_in(head.splits, sizeof(SharedSplit), total) ||
       !lies_in(head.ring, sizeof(SharedRingSlot), total)) {
-    return broken("a table lies outside");
+    return broken("a table is outside of it");
   }
   if (head.objects.count > kObjectsMost || head.knobs.count > kKnobsMost ||
       head.field.count > kFieldSamplesMost || head.ring.count == 0 ||
@@ -203,35 +202,37 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
     return broken("its checksum is wrong");
   }
 
-  // What is right by its checksum may still have been written wrong.
+  // The checksum does not prove that the values are valid.
   if (!(head.period_ns > 0) || !(head.force_max >= 0) || !std::isfinite(head.force_max)) {
-    return broken("its loop has no period or no limit");
+    return broken("its period or force limit is invalid");
   }
-  if (head.arm_count < 1 || head.arm_count > kArmsMost) return broken("no arm, or too many");
+  if (head.arm_count < 1 || head.arm_count > kArmsMost)
+    return broken("the number of arms is invalid");
   scene.arms.resize(head.arm_count);
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {
-    if (!take_arm(head.arms[i], scene.arms[i])) return broken("an arm makes no sense");
+    if (!take_arm(head.arms[i], scene.arms[i])) return broken("an arm is invalid");
   }
   for (const SharedTriangle& triangle : scene.triangles) {
     for (const std::uint32_t vertex : triangle) {
-      if (vertex >= head.vertices.count) return broken("a triangle has no vertex");
+      if (vertex >= head.vertices.count) return broken("a triangle has an invalid vertex");
     }
   }
   for (const SharedObject& object : objects) {
     if (!take_object(object, head, scene.triangles, scene.objects.emplace_back())) {
-      return broken("an object makes no sense");
+      return broken("an object is invalid");
     }
   }
   for (const SharedKnob& knob : knobs) {
-    if (!take_knob(knob, scene.knobs.emplace_back())) return broken("a knob makes no sense");
+    if (!take_knob(knob, scene.knobs.emplace_back())) return broken("a knob is invalid");
   }
   scene.vertices.reserve(vertices.size());
   for (const SharedVertex& vertex : vertices) {
-    if (!all_finite(vertex)) return broken("a vertex is nowhere");
+    if (!all_finite(vertex)) return broken("a vertex is not finite");
     scene.vertices.push_back(vector_of(vertex));
   }
   for (const auto& sample : copy_of<SharedFieldSample>(memory, head.field)) {
-    if (!all_finite(sample.p_W) || !all_finite(sample.f_W)) return broken("a field is nowhere");
+    if (!all_finite(sample.p_W) || !all_finite(sample.f_W))
+      return broken("a field sample is not finite");
     scene.field.push_back({vector_of(sample.p_W), vector_of(sample.f_W)});
   }
   scene.name = text_of(head.scene);

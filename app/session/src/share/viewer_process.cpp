@@ -27,10 +27,11 @@ driver::Result<std::unique_ptr<ViewerProcess>> ViewerProcess::start(
   words.push_back(nullptr);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  // A process group of its own: Ctrl-C in the run's terminal ends the run, and the viewer says so.
+  // Separate process group: Ctrl-C in the run's terminal ends the run but not the viewer, which
+  // reports the end.
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  // What the run prints may be read by a pipe, which ends when the last writer does: the viewer is
-  // none.
+  // The output of the run may go to a pipe, which closes with its last writer. So the viewer must
+  // not inherit it.
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);

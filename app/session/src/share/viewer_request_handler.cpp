@@ -17,7 +17,7 @@
 namespace thimble::session {
 namespace {
 
-/// Names a recording after its scene and the time.
+/// Returns a file name made of the scene and the time.
 std::string recording_name(const std::string& scene) {
   const std::time_t now = std::time(nullptr);
   std::tm local{};
@@ -27,7 +27,7 @@ std::string recording_name(const std::string& scene) {
   return run_name_of(scene) + time;
 }
 
-/// Fails if a recording cannot be begun under this name.
+/// Fails if a recording cannot be started under this name.
 driver::Result<void> check_new_recording(const Session& session, const std::string& path) {
   for (std::size_t arm = 0; arm < session.arms(); ++arm) {
     const auto file = file_of_arm(path, session.arm_name(arm));
@@ -45,7 +45,7 @@ void ViewerRequestHandler::record(const SharedRun::RecordOrder& order) {
   last_order_ = order.number;
   const std::string path = order.path.empty() ? recording_name(session_.scene().name) : order.path;
   if (order.record) {
-    // Before the recording that runs is ended for it.
+    // Checked before the current recording is ended.
     if (auto may = check_new_recording(session_, path); !may) {
       return scene::logger().error("{}", may.error().message);
     }
@@ -66,7 +66,7 @@ void ViewerRequestHandler::hear_records() {
 void ViewerRequestHandler::hear_stop() {
   const bool closed = viewer_ && viewer_->closed();
   if (closed && !ends_with_viewer_ && next_ != nullptr && next_->loops()) {
-    viewer_.reset();  // so that the user is told once
+    viewer_.reset();  // so that the user is informed only once
     scene::logger().warn(
         "The window is closed; the run continues and restarts until Ctrl-C. `thimble view {}` "
         "shows it again.",
@@ -92,7 +92,7 @@ void ViewerRequestHandler::step() {
   hear_stop();
   if (next_ == nullptr) return;
   next_->step(scene::stop_asked());
-  if (shared.closed()) hear_records();  // what was asked before
+  if (shared.closed()) hear_records();  // requests made before the run was closed
 }
 
 void ViewerRequestHandler::close() {
@@ -101,7 +101,7 @@ void ViewerRequestHandler::close() {
   hear_stop();
   const auto order = shared.record_order_after(last_order_);
   if (!order || !order->record) return;
-  const std::string told = "Nothing is recorded: the run had ended when it was asked for.";
+  const std::string told = "No recording was started: the run had already ended.";
   scene::logger().error("{}", told);
   shared.set_notice(told);
 }
@@ -120,7 +120,7 @@ std::unique_ptr<ViewerRequestHandler> open_viewer_requests(
       scene::logger().error("{}", started.error().message);
     }
   } else if (choice == ViewerChoice::kAsked && scene::talk() != scene::Talk::kQuiet) {
-    scene::terminal().info("No screen (DISPLAY, WAYLAND_DISPLAY): watch by `thimble view {}`.",
+    scene::terminal().info("No display (DISPLAY, WAYLAND_DISPLAY): watch with `thimble view {}`.",
                            session.shared()->name());
   }
   return std::make_unique<ViewerRequestHandler>(session, std::move(viewer), ends_with_viewer, next);

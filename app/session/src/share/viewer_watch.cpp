@@ -20,7 +20,7 @@ void ViewerWatch::step(const std::string& now) {
   watch_knobs(now);
   if (shared_.pause_asked() == paused_) return;
   paused_ = !paused_;
-  log_->info("{}{}", now, paused_ ? "A viewer pauses the run." : "A viewer lets the run go on.");
+  log_->info("{}{}", now, paused_ ? "A viewer paused the run." : "A viewer resumed the run.");
 }
 
 void ViewerWatch::watch_viewers(const std::string& now) {
@@ -33,15 +33,15 @@ void ViewerWatch::watch_viewers(const std::string& now) {
                         std::back_inserter(fresh));
     for (const std::uint64_t pid : fresh) log_->info("{}Viewer {} {}.", now, pid, what);
   };
-  tell(viewers, viewers_, "looks on");
-  tell(viewers_, viewers, "has left");
+  tell(viewers, viewers_, "has attached");
+  tell(viewers_, viewers, "has detached");
   viewers_ = std::move(viewers);
 }
 
 void ViewerWatch::watch_knobs(const std::string& now) {
   for (std::size_t i = 0; i < knobs_.size(); ++i) {
     Knob& knob = knobs_[i];
-    // What makes no sense is ignored by the run as well.
+    // The run ignores invalid values as well.
     const double wanted = shared_.knob_wanted(i).value_or(knob.newest);
     knob.still = wanted == knob.newest ? knob.still + 1 : 0;
     knob.newest = wanted;

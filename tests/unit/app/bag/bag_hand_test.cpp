@@ -13,12 +13,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a hand that sways by 2 Hz is, m.
+/// Position of a hand that oscillates at 2 Hz, m.
 Eigen::Vector3d sway(double time) {
   return {0.01 * std::sin(4 * M_PI * time), 0.02 * time, 0.005 * std::cos(4 * M_PI * time)};
 }
 
-TEST(BagHand, GoesWhereADenseBagWentToAHundredthOfAMillimetre) {
+TEST(BagHand, FollowsADenseBagWithin10Micrometres) {
   const fs::path bag = support::scratch_folder() / "thimble_bag_hand";
   fs::remove_all(bag);
   bag::BagTrack poses;
@@ -29,7 +29,7 @@ TEST(BagHand, GoesWhereADenseBagWentToAHundredthOfAMillimetre) {
   ASSERT_TRUE(bag::write_bag(bag, {poses}));
   const auto stations = read_bag_hand(bag, "/pose", bag::BagAxes::kPlain);
   ASSERT_TRUE(stations) << stations.error().message;
-  // One in ten, and the last.
+  // Every tenth sample, and the last.
   EXPECT_EQ(stations->size(), 202U);
   EXPECT_DOUBLE_EQ(stations->back().time, 2.005);
   EXPECT_EQ(stations->back().p_W, poses.messages.back().value);
@@ -37,7 +37,7 @@ TEST(BagHand, GoesWhereADenseBagWentToAHundredthOfAMillimetre) {
   ASSERT_TRUE(route) << route.error().message;
   double most = 0;
   for (const auto& [time, p_W] : *route) {
-    if (time < 0.01 || time > 1.99) continue;  // a hand begins and ends at rest
+    if (time < 0.01 || time > 1.99) continue;  // a hand starts and ends at rest
     most = std::max(most, (p_W - sway(time)).norm());
   }
   EXPECT_LT(most, 1e-5);
@@ -47,7 +47,7 @@ TEST(BagHand, GoesWhereADenseBagWentToAHundredthOfAMillimetre) {
   fs::remove_all(bag);
 }
 
-TEST(BagHand, RefusesPositionsThatAreNoMetres) {
+TEST(BagHand, RejectsPositionsThatAreNotInMetres) {
   const fs::path bag = support::scratch_folder() / "thimble_bag_hand_far";
   fs::remove_all(bag);
   bag::BagTrack poses;

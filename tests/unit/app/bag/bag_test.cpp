@@ -47,7 +47,7 @@ class Bag : public ::testing::Test {
     return encode(BagKind::kPositions, {stamp_ns, frame, p});
   }
 
-  /// Reads positions and expects a sentence that holds each of `parts`.
+  /// Reads positions and expects an error message that contains each of `parts`.
   void expect_refused(const std::vector<std::string>& parts, const std::string& topic = {}) const {
     const auto read = read_bag(file(), BagKind::kPositions, topic);
     ASSERT_FALSE(read);
@@ -59,7 +59,7 @@ class Bag : public ::testing::Test {
   fs::path folder_;
 };
 
-TEST_F(Bag, GivesPositionsByTheStampsOfTheirHeaders) {
+TEST_F(Bag, UsesTheStampsOfHeaders) {
   {
     test::BagMaker maker(file());
     maker.topic(7, "/tf", "tf2_msgs/msg/TFMessage");
@@ -67,7 +67,7 @@ TEST_F(Bag, GivesPositionsByTheStampsOfTheirHeaders) {
     maker.message(7, 5, {0, 1, 0, 0});
     maker.message(9, 100, pose(1'700'000'000'500'000'000, {0.01, 0.02, 0.03}));
     maker.message(9, 900, pose(1'700'000'000'510'000'000, {0.04, 0.05, 0.06}));
-    maker.message(9, 950, pose(1'700'000'000'510'000'000, {1, 1, 1}));  // same time: left out
+    maker.message(9, 950, pose(1'700'000'000'510'000'000, {1, 1, 1}));  // same time: ignored
   }
   for (const fs::path& path : {file(), folder_}) {
     const auto read = read_bag(path, BagKind::kPositions);
@@ -87,7 +87,7 @@ TEST_F(Bag, GivesPositionsByTheStampsOfTheirHeaders) {
   EXPECT_EQ(received->samples.size(), 3U);
 }
 
-TEST_F(Bag, GoesByTheRecordersTimesWhereNoMessageIsStamped) {
+TEST_F(Bag, UsesTheRecordersTimesWithoutStamps) {
   {
     test::BagMaker maker(file());
     maker.topic(1, "/pose", kPose);
@@ -114,7 +114,7 @@ TEST_F(Bag, JoinsTheFilesOfASplitRecording) {
   EXPECT_DOUBLE_EQ(read->samples[1].time, 1);
 }
 
-TEST_F(Bag, ReadsNumbersInBothOrdersOfBytes) {
+TEST_F(Bag, ReadsBothByteOrders) {
   std::vector<unsigned char> bytes{0, 0, 0, 0};
   const auto put = [&bytes](auto value) {
     while ((bytes.size() - 4) % sizeof value != 0) bytes.push_back(0);
@@ -131,14 +131,14 @@ TEST_F(Bag, ReadsNumbersInBothOrdersOfBytes) {
   EXPECT_EQ(read->stamp_ns, -1'999'999'995);
   EXPECT_EQ(read->frame, "w");
   EXPECT_EQ(read->value, Eigen::Vector3d(1, 2, 3));
-  // What was written backwards from the start: a time before the epoch keeps its nanoseconds.
+  // A time before the epoch keeps its nanoseconds.
   const auto again = decode(BagKind::kForces, encode(BagKind::kForces, *read));
   ASSERT_TRUE(again);
   EXPECT_EQ(again->stamp_ns, read->stamp_ns);
 }
 
 #ifdef THIMBLE_FAST_CDR
-TEST_F(Bag, WritesTheBytesThatAnotherMakersLibraryWrites) {
+TEST_F(Bag, WritesTheSameBytesAsFastCdr) {
   for (const std::string frame : {"world", "w", "", "base"}) {
     for (const BagKind kind : {BagKind::kPositions, BagKind::kForces}) {
       std::vector<char> room(512);
@@ -166,7 +166,7 @@ TEST_F(Bag, WritesTheBytesThatAnotherMakersLibraryWrites) {
 }
 #endif
 
-TEST_F(Bag, SaysWhatIsThereWhereATopicIsNot) {
+TEST_F(Bag, ListsTopicsIfOneIsMissing) {
   {
     test::BagMaker maker(file());
     maker.topic(1, "/arm/pose", kPose);
@@ -178,16 +178,16 @@ TEST_F(Bag, SaysWhatIsThereWhereATopicIsNot) {
   expect_refused({"has no topic /pose", "/arm/pose (geometry_msgs/msg/PoseStamped)"}, "/pose");
   expect_refused({"/arm/wrench is of type geometry_msgs/msg/WrenchStamped", "expected"},
                  "/arm/wrench");
-  expect_refused({"/goal holds no message"}, "/goal");
+  expect_refused({"/goal has no messages"}, "/goal");
   EXPECT_TRUE(read_bag(file(), BagKind::kPositions, "/arm/pose"));
 }
 
-TEST_F(Bag, RefusesWhatIsNoBag) {
+TEST_F(Bag, RejectsFilesThatAreNotBags) {
   expect_refused({"no such bag"});
   std::ofstream(file()) << "time x y z\n0 0 0 0\n";
-  expect_refused({"is damaged, or no ROS bag"});
-  std::ofstream(file(), std::ios::trunc).flush();  // an empty file is an empty data base
-  expect_refused({"no ROS bag", "lacks the tables"});
+  expect_refused({"is damaged, or not a ROS bag"});
+  std::ofstream(file(), std::ios::trunc).flush();  // an empty file is an empty database
+  expect_refused({"not a ROS bag", "the tables topics and messages are missing"});
   fs::remove(file());
   const auto none = read_bag(folder_, BagKind::kPositions);
   ASSERT_FALSE(none);
@@ -200,7 +200,7 @@ TEST_F(Bag, RefusesWhatIsNoBag) {
   }
 }
 
-TEST_F(Bag, RefusesMessagesThatCannotBeMeant) {
+TEST_F(Bag, RejectsInvalidMessages) {
   struct Case {
     std::string part;
     std::vector<unsigned char> second;
@@ -210,14 +210,14 @@ TEST_F(Bag, RefusesMessagesThatCannotBeMeant) {
   auto long_one = pose(2, {0, 0, 0});
   long_one.resize(long_one.size() + 8);
   for (const Case& wrong :
-       {Case{"message 2 of /pose is no", {}}, Case{"message 2 of /pose is no", short_one},
-        Case{"message 2 of /pose is no", long_one},
-        Case{"message 2 of /pose is no", encode(BagKind::kForces, {2, "world", {0, 0, 0}})},
+       {Case{"message 2 of /pose is not a", {}}, Case{"message 2 of /pose is not a", short_one},
+        Case{"message 2 of /pose is not a", long_one},
+        Case{"message 2 of /pose is not a", encode(BagKind::kForces, {2, "world", {0, 0, 0}})},
         Case{"not finite", pose(2, {0, std::numeric_limits<double>::quiet_NaN(), 0})},
         Case{"not finite", pose(2, {0, 0, std::numeric_limits<double>::infinity()})},
         Case{"frame \"base\"", pose(2, {0, 0, 0}, "base")},
         Case{"more than a day", pose(100'000'000'000'000, {0, 0, 0})},
-        Case{"goes back in time", pose(0, {0, 0, 0})},
+        Case{"the time of /pose decreases", pose(0, {0, 0, 0})},
         Case{"is compressed", {0x28, 0xB5, 0x2F, 0xFD, 0, 0, 0, 0}}}) {
     test::BagMaker maker(file());
     maker.topic(1, "/pose", kPose);
@@ -231,7 +231,7 @@ TEST_F(Bag, RefusesMessagesThatCannotBeMeant) {
   expect_refused({"serialized as \"json\""});
 }
 
-TEST_F(Bag, WritesWhatItReads) {
+TEST_F(Bag, ReadsWhatItWrites) {
   BagTrack poses{.name = "/pose", .kind = BagKind::kPositions, .frame = "world", .messages = {}};
   BagTrack forces{.name = "/wrench", .kind = BagKind::kForces, .frame = "world", .messages = {}};
   for (int i = 0; i < 300; ++i) {
@@ -254,11 +254,11 @@ TEST_F(Bag, WritesWhatItReads) {
   }
   const auto again = write_bag(bag, {poses});
   ASSERT_FALSE(again);
-  EXPECT_NE(again.error().message.find("is there already"), std::string::npos);
+  EXPECT_NE(again.error().message.find("already exists"), std::string::npos);
   EXPECT_FALSE(write_bag("/proc/none/bag", {poses}));
 }
 
-TEST_F(Bag, TurnsTheAxesOfTheOmnisDrivers) {
+TEST_F(Bag, RotatesTheAxesOfTheOmnisDrivers) {
   const Eigen::Vector3d right_away_up(1, 2, 3);
   EXPECT_EQ(in_world(BagAxes::kOmni, right_away_up), Eigen::Vector3d(-2, 1, 3));
   EXPECT_EQ(in_world(BagAxes::kPlain, right_away_up), right_away_up);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// The first row at which a column is least, by asking every row about every other.
+// Returns the first row with the minimum of a column, by comparing all pairs of rows.
 template <std::size_t kColumns>
 std::size_t first_least(const std::vector<std::array<double, kColumns>>& rows, std::size_t k,
                         double sign) {
@@ -30,13 +30,13 @@ std::size_t first_least(const std::vector<std::array<double, kColumns>>& rows, s
   return rows.size();
 }
 
-TEST(Extremes, AreTheFirstRowsOfLeastAndMost) {
+TEST(Extremes, AreTheFirstRowsOfMinimumAndMaximum) {
   support::Random random(1);
   for (int round = 0; round < 200; ++round) {
     std::vector<std::array<double, 3>> rows(1 + random.bits() % 40);
     Extremes<3> extremes;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      for (double& value : rows[i]) value = std::round(random.uniform(-5, 5));  // many are equal
+      for (double& value : rows[i]) value = std::round(random.uniform(-5, 5));  // many equal values
       extremes.take(rows[i], i);
     }
     for (std::size_t k = 0; k < 3; ++k) {
@@ -48,7 +48,7 @@ TEST(Extremes, AreTheFirstRowsOfLeastAndMost) {
   }
 }
 
-TEST(Extremes, PassOverWhatIsNoNumber) {
+TEST(Extremes, IgnoreNaN) {
   Extremes<1> extremes;
   const std::array<double, 6> values{kNan, 2, kNan, 1, 3, kNan};
   for (std::size_t i = 0; i < values.size(); ++i) extremes.take({values[i]}, i);

@@ -30,7 +30,7 @@ TEST(FaultMarks, MarkNothingOnAGoodMesh) {
   EXPECT_TRUE(fault_legend(found, 0, 0).empty());
 }
 
-TEST(FaultMarks, PutEveryOpenEdgeOnThePictureAndInTheLegend) {
+TEST(FaultMarks, ShowEveryOpenEdgeWithALegend) {
   const render::TriangleMesh mesh = open_box();
   const render::MeshFindings found = render::check_mesh(mesh);
   ASSERT_TRUE(has_marks(found));

@@ -1,4 +1,4 @@
-// The page that plays a touch: what of a run is in it, and that it is what was recorded.
+// The page that plays a touch: it contains the required data of a run, as recorded.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -34,7 +34,7 @@ using driver::TickRecord;
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
-// A run with everything that a page plots going up and down, and one tick of each that stands out.
+// A run in which every plotted value rises and falls, with one extreme tick per value.
 std::vector<TickRecord> lively_run(std::size_t count) {
   std::vector<TickRecord> ticks(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -85,7 +85,7 @@ TEST(PageBlock, WritesBase64AsTheStandardDoes) {
   EXPECT_EQ(of("foobar"), "Zm9vYmFy");
 }
 
-TEST(PageBlock, PutsEveryArrayWhereABrowserCanLookAtItInPlace) {
+TEST(PageBlock, AlignsEveryArrayForABrowser) {
   PageBlock block;
   block.add("odd", std::vector<std::uint8_t>{1, 2, 3});
   block.add("wide", std::vector<double>{0.1, -1e300});
@@ -108,10 +108,10 @@ TEST(PageRows, KeepEveryTickThatFits) {
   EXPECT_TRUE(rows_kept({}, 1000).empty());
 }
 
-TEST(PageRows, KeepLeastAndMostOfALongRun) {
+TEST(PageRows, KeepMinimumAndMaximumOfALongRun) {
   constexpr std::size_t kMost = 2000;
   auto ticks = lively_run(100'000);
-  // Single ticks that no regular choice would meet.
+  // Single ticks that regular sampling would miss.
   ticks[12'345].f_sent_W = {0, 0, 4.5};
   ticks[23'457].f_wanted_W = {0, 0, 9.5};
   ticks[34'567].depth = 0.02;
@@ -129,14 +129,14 @@ TEST(PageRows, KeepLeastAndMostOfALongRun) {
   }
 }
 
-TEST(PageRows, KeepLeastAndMostInEveryStretch) {
-  // What a plot of some hundred points shows of noise is its outline, all along.
+TEST(PageRows, KeepMinimumAndMaximumInEveryStretch) {
+  // A plot of a few hundred points must show the whole outline of noise.
   constexpr std::size_t kCount = 50'000, kMost = 5500;
   auto ticks = lively_run(kCount);
   support::Random random(7);
   for (TickRecord& tick : ticks) tick.f_sent_W = {0, 0, random.uniform(0.0, 5.0)};
   const auto kept = rows_kept(ticks, kMost);
-  constexpr std::size_t kStretch = 1000;  // of which each holds many of the page's own
+  constexpr std::size_t kStretch = 1000;  // each contains many rows of the page
   for (std::size_t begin = 0; begin < kCount; begin += kStretch) {
     const auto first = std::lower_bound(kept.begin(), kept.end(), begin);
     const auto last = std::lower_bound(kept.begin(), kept.end(), begin + kStretch);
@@ -238,7 +238,7 @@ TEST(OutlineTrace, KeepsPeaksAndPeriodsOfMillionsOfTicks) {
   EXPECT_EQ(*std::max_element(trace.periods_ns().begin(), trace.periods_ns().end()), 1'300'000);
 }
 
-TEST(PageRows, AreTheTicksAsTheyWere) {
+TEST(PageRows, AreTheRecordedTicks) {
   const auto ticks = lively_run(40'000);
   const auto kept = rows_kept(ticks, 3000);
   PageBlock block;
@@ -258,7 +258,7 @@ TEST(PageRows, AreTheTicksAsTheyWere) {
     ASSERT_EQ(time[i], 1e-9 * static_cast<double>(tick.time_ns - ticks[0].time_ns));
     ASSERT_EQ(depth[i], static_cast<float>(tick.depth));
     ASSERT_EQ(touching[i], tick.in_contact ? 1 : 0);
-    // The time since the tick before, which the page may not show.
+    // The time since the previous tick, which may not be on the page.
     ASSERT_EQ(period[i], 1e-3F);
     for (std::size_t k = 0; k < 3; ++k) {
       ASSERT_EQ(tip[3 * i + k], static_cast<float>(tick.p_WT[k]));
@@ -296,7 +296,7 @@ TEST(LightMesh, HasFewTrianglesAndStaysOnTheSurface) {
   EXPECT_EQ(light_mesh(mesh, mesh.triangles.size()).triangles, mesh.triangles);
 }
 
-TEST(Page, OfAMinuteAtAKilohertzIsBelowTenMegabytes) {
+TEST(Page, MinuteAtOneKilohertzIsBelowTenMegabytes) {
   const auto ticks = lively_run(60'001);
   const auto mesh = wavy_plate(400);  // 320,000 triangles
   PageTouch touch;
@@ -313,14 +313,14 @@ TEST(Page, OfAMinuteAtAKilohertzIsBelowTenMegabytes) {
   PageBlock block;
   const auto objects = page_objects(touch, block);
   const auto arm = page_arm(touch, 0, block);
-  EXPECT_EQ(arm["rows"], 60'001);  // every tick of it
+  EXPECT_EQ(arm["rows"], 60'001);  // all ticks of the touch
   EXPECT_EQ(objects[0]["triangles"], 320'000);
   EXPECT_LE(objects[0]["drawn"].get<std::size_t>(), kPageTrianglesMost);
-  constexpr std::size_t kLibraries = 1'100'000;  // three.js and dygraphs as Debian 12 has them
+  constexpr std::size_t kLibraries = 1'100'000;  // three.js and dygraphs of Debian 12
   EXPECT_LT(base64(block.bytes()).size() + kLibraries, 10'000'000U);
 }
 
-TEST(PageMarks, TellOfFaultsAndOfTheGateInARecording) {
+TEST(PageMarks, ShowFaultsAndTheGateInARecording) {
   auto ticks = lively_run(3000);
   for (std::size_t i = 500; i < 520; ++i) ticks[i].f_sent_W = {0, 0, 0.1};
   for (std::size_t i = 2500; i < 3000; ++i) {
@@ -330,7 +330,7 @@ TEST(PageMarks, TellOfFaultsAndOfTheGateInARecording) {
   }
   const auto marks = marks_of_ticks(ticks, kMillisecond);
   ASSERT_EQ(marks.size(), 3U);
-  EXPECT_EQ(marks[0].kind, PageMark::Kind::kNote);  // forces are let through
+  EXPECT_EQ(marks[0].kind, PageMark::Kind::kNote);  // forces are enabled
   EXPECT_EQ(marks[1].kind, PageMark::Kind::kGate);
   EXPECT_EQ(marks[1].begin_ns, ticks[500].time_ns);
   EXPECT_EQ(marks[1].end_ns, ticks[519].time_ns);
@@ -339,7 +339,7 @@ TEST(PageMarks, TellOfFaultsAndOfTheGateInARecording) {
   EXPECT_EQ(marks[2].begin_ns, ticks[2500].time_ns);
 }
 
-// An object that is as far as it was asked often.
+// Object whose position the test sets.
 class Wanderer final : public render::ObjectTouch {
  public:
   driver::ForceCommand update(const driver::DeviceState&) noexcept override { return {}; }
@@ -348,7 +348,7 @@ class Wanderer final : public render::ObjectTouch {
   double at = 0;
 };
 
-TEST(BodyTrace, KeepsALongRunInTheRoomOfAShortOneWithoutTheHeap) {
+TEST(BodyTrace, LongRunFitsWithoutAllocation) {
   std::vector<std::unique_ptr<render::ObjectTouch>> objects;
   auto one = std::make_unique<Wanderer>();
   Wanderer& wanderer = *one;
@@ -356,7 +356,7 @@ TEST(BodyTrace, KeepsALongRunInTheRoomOfAShortOneWithoutTheHeap) {
   const render::SceneTouch touch(std::move(objects));
   const std::size_t moving[] = {0};
   session::BodyTrace trace(touch, moving,
-                           1000 * kMillisecond);  // asked for one second, run for a minute
+                           1000 * kMillisecond);  // planned for one second, run for a minute
   EXPECT_EQ(support::heap_calls_of([&] {
               TickRecord tick;
               for (std::int64_t i = 0; i < 60'000; ++i) {
@@ -375,7 +375,7 @@ TEST(BodyTrace, KeepsALongRunInTheRoomOfAShortOneWithoutTheHeap) {
   }
 }
 
-TEST(DentTrace, KeepsEveryEndOfADentWhenRoomIsShort) {
+TEST(DentTrace, KeepsTheEndOfEveryDentWhenFull) {
   auto drawn = std::make_unique<session::DrawnDent>();
   session::DentTrace trace(*drawn);
   drawn->patch.object = 0;
@@ -384,7 +384,7 @@ TEST(DentTrace, KeepsEveryEndOfADentWhenRoomIsShort) {
               TickRecord tick;
               for (int i = 0; i < 20'000; ++i) {
                 tick.time_ns = i * 16 * kMillisecond;
-                // Nine pictures of a dent that goes in, then it is gone.
+                // Nine pictures of a growing dent, then one without it.
                 drawn->patch.triangle_count = i % 10 == 9 ? 0 : 40;
                 drawn->patch.points[29].p = {0, 0, 1e-3 * i};
                 ++drawn->drawings;
@@ -405,14 +405,14 @@ TEST(DentTrace, KeepsEveryEndOfADentWhenRoomIsShort) {
       ASSERT_EQ(frame.time_ns / kMillisecond / 16 % 10, 9);
       continue;
     }
-    // Its own points went with it when others made room.
+    // Its points were moved with it when memory was freed.
     const auto number = static_cast<double>(frame.time_ns / kMillisecond / 16);
     ASSERT_NEAR(trace.points()[frame.point + 29][2], 1e-3 * number, 1e-5);
   }
   EXPECT_GE(gone, 500U);
 }
 
-// Stands in for what Debian's packages bring.
+// Replaces the contents of Debian's packages.
 void write_libraries(const std::filesystem::path& share) {
   const auto write = [&](const std::string& file, const std::string& text) {
     std::filesystem::create_directories((share / file).parent_path());
@@ -425,7 +425,7 @@ void write_libraries(const std::filesystem::path& share) {
   write("doc/libjs-dygraphs/copyright", "dygraphs' licence");
 }
 
-TEST(Page, HoldsWhatItIsMadeOfAndNoNameOfASceneGetsOut) {
+TEST(Page, IsSelfContainedAndEscapesSceneNames) {
   const std::filesystem::path share = support::scratch_folder() / "share";
   const char* before = std::getenv("XDG_DATA_DIRS");
   const std::string kept = before != nullptr ? before : "";
@@ -456,7 +456,7 @@ TEST(Page, HoldsWhatItIsMadeOfAndNoNameOfASceneGetsOut) {
   EXPECT_EQ(count("<script>bad()"), 0U);
   EXPECT_EQ(count("</script><b>"), 0U);
   EXPECT_EQ(count("<script"), count("</script>"));
-  EXPECT_EQ(count("@NUMBERS@"), 1U);  // the library's own, left alone
+  EXPECT_EQ(count("@NUMBERS@"), 1U);  // from the library, unchanged
   EXPECT_EQ(count("default-src 'none'"), 1U);
   EXPECT_EQ(count("three&#39;s licence &lt;three@example.org&gt;"), 1U);
   EXPECT_EQ(count("http://") + count("https://"), 0U);

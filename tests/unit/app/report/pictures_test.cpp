@@ -19,7 +19,7 @@
 namespace thimble::report {
 namespace {
 
-// A tetrahedron with a corner at the origin and legs of 50 mm, wound outwards.
+// A tetrahedron with a corner at the origin and legs of 50 mm, oriented outwards.
 render::TriangleMesh tetrahedron() {
   render::TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {0.05, 0, 0}, {0, 0.05, 0}, {0, 0, 0.05}};
@@ -82,7 +82,7 @@ TEST(ForcePicture, KeepsPeaksOfRequestedForceAndDepth) {
   EXPECT_DOUBLE_EQ(depth_max, 20);
 }
 
-TEST(MeshView, HidesWhatLiesBehindAndNothingBeside) {
+TEST(MeshView, HidesPointsBehindTheMeshOnly) {
   const auto& front = view_directions()[0];
   const MeshView view(tetrahedron(), front, {0.02, 0.02, 0.02}, 0.08, 200);
   EXPECT_TRUE(view.hides({-0.03, 0.01, 0.01}, 0.001));
@@ -133,7 +133,7 @@ TEST(Pictures, AreWrittenAsPngAndSvg) {
   }
 }
 
-TEST(Pictures, TellNothingOfThePaceOfVirtualTime) {
+TEST(Pictures, HaveNoPeriodHistogramInVirtualTime) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const std::filesystem::path folder = support::scratch_folder() / "virtual_pictures";
   std::filesystem::remove_all(folder);
@@ -152,7 +152,7 @@ TEST(Pictures, AreDrawnOfARunWithoutContactToo) {
   EXPECT_TRUE(draw_pictures({}, tetrahedron(), {}, folder).ok());
 }
 
-TEST(Pictures, ShowForceAloneWhereNothingWasTouched) {
+TEST(Pictures, ShowOnlyTheForceWithoutContact) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const std::filesystem::path folder = support::scratch_folder() / "untouched_pictures";
   std::filesystem::remove_all(folder);
@@ -167,7 +167,7 @@ TEST(Pictures, ShowForceAloneWhereNothingWasTouched) {
   }
 }
 
-TEST(Pictures, KeepAllLabelsApartAndInsideWhateverTheNumbersAre) {
+TEST(Pictures, LabelsNeverOverlapOrLeaveThePicture) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const std::filesystem::path folder = support::scratch_folder() / "labels";
   for (const double size : {1e-4, 70.0}) {
@@ -179,10 +179,10 @@ TEST(Pictures, KeepAllLabelsApartAndInsideWhateverTheNumbersAre) {
     std::stringstream script;
     script << std::ifstream(folder / "data/path_on_mesh.gp").rdbuf();
     std::istringstream lines(script.str());
-    double left = 0;   // where the panel stands, of the picture's width
-    double right = 0;  // of the panel before it
+    double left = 0;   // position of the panel, as a fraction of the picture's width
+    double right = 0;  // of the previous panel
     double name_at = 0;
-    for (std::string line; std::getline(lines, line) && line != "unset output";) {  // the PNG's
+    for (std::string line; std::getline(lines, line) && line != "unset output";) {  // of the PNG
       if (line.starts_with("set lmargin")) {
         right = left > 0 ? left : 0;
         left = std::stod(line.substr(line.rfind(' ')));
@@ -201,14 +201,14 @@ TEST(Pictures, KeepAllLabelsApartAndInsideWhateverTheNumbersAre) {
         longest = std::max(longest, end - at - 1);
         at = line.find('\'', end + 1);
       }
-      // The panel's own name comes with the next lines; that of the panel before is at its left.
+      // The name of the panel is in the next lines; that of the previous panel is on its left.
       EXPECT_GE(left * 1800, static_cast<double>(longest) * 14 + 30) << line;
       EXPECT_LT(name_at, left);
     }
   }
 }
 
-TEST(Pictures, CutOffATitleThatIsTooLongAndKeepItsLetters) {
+TEST(Pictures, TruncateALongTitleAtACharacter) {
   EXPECT_EQ(fitted("box, vintage_phantom", 1000, 22), "box, vintage_phantom");
   const std::string cut = fitted("Ölöffel und Öl", 150, 17);
   EXPECT_EQ(cut, "Ölöffel u…");
@@ -225,7 +225,7 @@ TEST(Pictures, WriteNoNegativeZeroOnAnAxis) {
   }
 }
 
-TEST(Pictures, TellWhatGnuplotSaidAgainstACommand) {
+TEST(Pictures, ReportTheErrorOfGnuplot) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const std::filesystem::path folder = support::scratch_folder() / "thimble_wrong";
   std::filesystem::create_directories(folder / "data");
@@ -235,7 +235,7 @@ TEST(Pictures, TellWhatGnuplotSaidAgainstACommand) {
       << done.error().message;
 }
 
-TEST(MeshPicture, IsWrittenWhereItWasAskedFor) {
+TEST(MeshPicture, IsWrittenToTheRequestedFile) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const std::filesystem::path folder = support::scratch_folder();
   ASSERT_TRUE(draw_mesh(tetrahedron(), folder / "tetrahedron.png", "tetrahedron", "m").ok());

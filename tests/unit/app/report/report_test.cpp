@@ -45,7 +45,7 @@ nlohmann::json read(const std::filesystem::path& file) {
   return nlohmann::json::parse(stream);
 }
 
-TEST(Report, HoldsTheValuesOfTheRun) {
+TEST(Report, ContainsTheValuesOfTheRun) {
   const std::filesystem::path folder = support::scratch_folder() / "thimble_report";
   ASSERT_TRUE(write_report(example(), folder).ok());
   const nlohmann::json report = read(folder / "report.json");
@@ -87,17 +87,17 @@ TEST(Report, WritesEachFigureWithItsGoal) {
   EXPECT_FALSE(named("touch_downs").contains("goal"));
 }
 
-TEST(Report, TellsTheRunInPlainWords) {
+TEST(Report, SummaryIsPlainText) {
   const std::string text = summary(example());
-  EXPECT_NE(text.find("touched it 1 time,"), std::string::npos) << text;
-  EXPECT_NE(text.find("0.80 N at most"), std::string::npos) << text;
+  EXPECT_NE(text.find(": 1 contact,"), std::string::npos) << text;
+  EXPECT_NE(text.find("0.80 N maximum"), std::string::npos) << text;
   EXPECT_NE(text.find("No contact was lost"), std::string::npos) << text;
   const auto lines = std::count(text.begin(), text.end(), '\n');
   EXPECT_GE(lines, 8);
   EXPECT_LE(lines, 12);
 }
 
-TEST(Report, GivesTheMeanForceOfARunThatTouchedNoSurface) {
+TEST(Report, SummaryHasTheRmsForceWithoutContact) {
   session::RunFigures report;
   driver::TickRecord record;
   record.f_sent_W = {0, 0, 1.5};
@@ -106,9 +106,7 @@ TEST(Report, GivesTheMeanForceOfARunThatTouchedNoSurface) {
     report.statistics.take(record);
   }
   const std::string text = summary(report);
-  EXPECT_NE(text.find("1.50 N on average (rms) over the run, which touched no surface"),
-            std::string::npos)
-      << text;
+  EXPECT_NE(text.find("1.50 N RMS over the run, which had no contact"), std::string::npos) << text;
 }
 
 TEST(Report, NamesTheWallThatPushed) {
@@ -116,7 +114,7 @@ TEST(Report, NamesTheWallThatPushed) {
   EXPECT_EQ(summary(report).find("Walls"), std::string::npos);
   report.walls = {.pushed = 51, .f_strongest_W = {0, 0, 2.5}};
   const std::string text = summary(report);
-  EXPECT_NE(text.find("walls pushed in 51 ticks, with 2.50 N at most (-z wall)"), std::string::npos)
+  EXPECT_NE(text.find("walls pushed in 51 ticks, with at most 2.50 N (-z wall)"), std::string::npos)
       << text;
   const std::filesystem::path folder = support::scratch_folder() / "thimble_report_walls";
   ASSERT_TRUE(write_report(report, folder).ok());
@@ -147,14 +145,14 @@ TEST(Report, NamesTheFaultThatEndedIt) {
   EXPECT_NE(summary(report).find(driver::describe(driver::Fault::kOverSpeed)), std::string::npos);
 }
 
-TEST(Report, NamesTheLinkBesideTheFault) {
+TEST(Report, NamesTheLinkInAdditionToTheFault) {
   session::RunFigures report = example();
   report.end = driver::ServoEnd::kDone;
   EXPECT_EQ(summary(report).find("Link "), std::string::npos);
   report.fault = driver::Fault::kOverSpeed;
   report.link = driver::LinkState::kLost;
   report.home_needed = true;
-  EXPECT_NE(summary(report).find("the arm was gone from the wire at the end"), std::string::npos);
+  EXPECT_NE(summary(report).find("the arm was disconnected at the end"), std::string::npos);
   const std::filesystem::path folder = support::scratch_folder() / "thimble_report_link";
   ASSERT_TRUE(write_report(report, folder).ok());
   const auto end = read(folder / "report.json")["end"];
@@ -163,10 +161,10 @@ TEST(Report, NamesTheLinkBesideTheFault) {
   EXPECT_EQ(end["home_needed"], true);
 }
 
-TEST(Report, WarnsOfAnArmThatDidNotTakeTheLastZeroForce) {
+TEST(Report, WarnsIfZeroForceWasNotAccepted) {
   session::RunFigures report = example();
   report.end = driver::ServoEnd::kDone;
-  EXPECT_NE(summary(report).find("the arm was left with zero force."), std::string::npos);
+  EXPECT_NE(summary(report).find("the arm accepted zero force."), std::string::npos);
   EXPECT_EQ(summary(report).find("DANGER"), std::string::npos);
   report.zero_assured = false;
   report.fault = driver::Fault::kRefused;
@@ -174,8 +172,8 @@ TEST(Report, WarnsOfAnArmThatDidNotTakeTheLastZeroForce) {
        {driver::ServoEnd::kDone, driver::ServoEnd::kStopped, driver::ServoEnd::kFault}) {
     report.end = end;
     const std::string text = summary(report);
-    EXPECT_EQ(text.find("left with zero force"), std::string::npos);
-    EXPECT_NE(text.find("A force may still stand at the arm"), std::string::npos);
+    EXPECT_EQ(text.find("the arm accepted zero force"), std::string::npos);
+    EXPECT_NE(text.find("The arm may still apply a force"), std::string::npos);
     EXPECT_NE(text.find(driver::describe(driver::Fault::kRefused)), std::string::npos);
   }
   const std::filesystem::path folder = support::scratch_folder() / "thimble_report_danger";
@@ -183,13 +181,13 @@ TEST(Report, WarnsOfAnArmThatDidNotTakeTheLastZeroForce) {
   EXPECT_EQ(read(folder / "report.json")["end"]["zero_assured"], false);
 }
 
-TEST(Report, SaysWhereItCannotWrite) {
+TEST(Report, ErrorNamesTheFolder) {
   const auto done = write_report(example(), "/proc/no_such_folder");
   ASSERT_FALSE(done.ok());
   EXPECT_NE(done.error().message.find("/proc/no_such_folder"), std::string::npos);
 }
 
-TEST(Report, SurvivesANameThatIsNotUtf8) {
+TEST(Report, NameMayBeInvalidUtf8) {
   session::RunFigures report = example();
   report.scene = "\xff\xfe";
   const std::filesystem::path folder = support::scratch_folder() / "thimble_report";
@@ -197,7 +195,7 @@ TEST(Report, SurvivesANameThatIsNotUtf8) {
   EXPECT_TRUE(read(folder / "report.json")["scene"].is_string());
 }
 
-TEST(Figure, IsWrittenWithANameThatIsNotUtf8) {
+TEST(Figure, NameMayBeInvalidUtf8) {
   const std::filesystem::path file = support::scratch_folder() / "figures_of_bytes.json";
   ASSERT_TRUE(write_figures({{"bytes_\xff", 1, "", ""}}, file).ok());
   EXPECT_EQ(read(file)[0]["name"], "bytes_\xEF\xBF\xBD");
@@ -217,7 +215,7 @@ TEST(Figure, MeetsItsGoalOrNot) {
   }
 }
 
-TEST(Figure, IsNamedWithItsPlaceInTheLastLineWhereItMissesItsGoal) {
+TEST(Figure, LastLineNamesUnmetGoalsWithTheirPlace) {
   const std::vector<Figure> figures{{"edge", 2, "%", "<= 1", "at B = 3 N s/m"},
                                     {"rate", 1, "%", "<= 3", "at 250 Hz"},
                                     {"cycles", 90, "%", ">= 95"},
@@ -230,31 +228,32 @@ TEST(Figure, IsNamedWithItsPlaceInTheLastLineWhereItMissesItsGoal) {
   EXPECT_NE(figure_table(figures).find("met  (at 250 Hz)"), std::string::npos);
 }
 
-TEST(Report, TellsOfMotorsThatGotHotAndOnlyOfThose) {
+TEST(Report, SummaryNamesHotMotorsOnly) {
   session::RunFigures report = example();
   report.heat_known = true;
   report.heat_most = 0.7;
   EXPECT_EQ(summary(report).find("Heat"), std::string::npos);
   report.heat_most = 0.93;
   report.heat_lowered = 412;
-  EXPECT_NE(summary(report).find("a motor reached 93 % of its limit; force lowered in 412 ticks"),
+  EXPECT_NE(summary(report).find("a motor reached 93 % of its limit; force reduced in 412 ticks"),
             std::string::npos);
 }
 
-TEST(Report, TellsWhatTheEnergyStageDidIfThereIsOne) {
+TEST(Report, SummaryNamesTheEnergyStageIfPresent) {
   session::RunFigures report = example();
   EXPECT_EQ(summary(report).find("by the gate"), std::string::npos);
   report.energy_stage = driver::EnergyStage::kPassivity;
   report.gate.energy_least = -0.0031;
   report.gate.damped = 17;
-  EXPECT_NE(summary(report).find("3.10 mJ given at most beyond what it took; damped in 17 ticks"),
-            std::string::npos);
+  EXPECT_NE(
+      summary(report).find("at most 3.10 mJ given beyond the energy taken; damping in 17 ticks"),
+      std::string::npos);
   report.energy_stage = driver::EnergyStage::kBounding;
   report.gate.bounded = 4;
   report.gate.stalls = 1;
   report.reopen = 0.04;
-  EXPECT_NE(summary(report).find("force cut in 4 ticks"), std::string::npos);
-  EXPECT_NE(summary(report).find("stood still 1 time; the force came back within 40 ms"),
+  EXPECT_NE(summary(report).find("force limited in 4 ticks"), std::string::npos);
+  EXPECT_NE(summary(report).find("was blocked 1 time; the force returned within 40 ms"),
             std::string::npos);
 }
 

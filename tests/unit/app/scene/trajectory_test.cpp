@@ -46,11 +46,11 @@ TEST(Trajectory, TellsWhichLineIsWrongAndWhatToDo) {
     return read ? "" : read.error().message;
   };
   EXPECT_NE(mistake("0 0 0 0\n1 0 0\n").find("line 2: expected 4 columns"), std::string::npos);
-  EXPECT_NE(mistake("0 0 0 0\n1 0 x 0\n").find("line 2: expected numbers"), std::string::npos);
-  EXPECT_NE(mistake("1 0 0 0\n0 0 0 0\n").find("goes back in time"), std::string::npos);
+  EXPECT_NE(mistake("0 0 0 0\n1 0 x 0\n").find("line 2: expected only numbers"), std::string::npos);
+  EXPECT_NE(mistake("1 0 0 0\n0 0 0 0\n").find("the time decreases"), std::string::npos);
   EXPECT_NE(mistake("0 0 0 0\n1 99 0 0\n").find("--length"), std::string::npos);
   EXPECT_NE(mistake("0 0 0 0\n1 nan 0 0\n").find("line 2"), std::string::npos);
-  EXPECT_NE(mistake("0 0 0 0\n").find("no two points"), std::string::npos);
+  EXPECT_NE(mistake("0 0 0 0\n").find("fewer than two points"), std::string::npos);
   EXPECT_NE(mistake("0 0 0 0\n", {.columns = "t x y"}).find("--columns"), std::string::npos);
   EXPECT_NE(mistake("0 0 0 0\n", {.columns = "t x y z fx"}).find("--columns"), std::string::npos);
 }

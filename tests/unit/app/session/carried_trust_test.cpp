@@ -9,11 +9,11 @@ namespace {
 
 constexpr double kTick = 1e-3;
 
-/// A tip on a hand that may hold it, with gravity compensation that may be wrong: a vertical
-/// motion.
+/// Vertical motion of a tip, with or without a hand, and with possibly incorrect gravity
+/// compensation.
 struct Tip {
   double mass = 0.075, weight = 0.7, carried = 0.7, friction = 0.005;  // kg, N, N, N s/m
-  double hand = 0;                                                     ///< N, of the hand, upwards
+  double hand = 0;  ///< Force of the hand upwards, N.
   bool held = false;
   double z = 0, v = 0, fastest = 0, share = 1;
   CarriedTrust trust{};
@@ -31,7 +31,7 @@ struct Tip {
   }
 };
 
-TEST(CarriedTrust, RightOneIsWholeFromTheFirstTick) {
+TEST(CarriedTrust, CorrectCompensationIsFullFromTheFirstTick) {
   Tip tip;
   tip.run(5);
   EXPECT_EQ(tip.share, 1);
@@ -39,7 +39,7 @@ TEST(CarriedTrust, RightOneIsWholeFromTheFirstTick) {
   EXPECT_EQ(tip.trust.withdrawn(), 0U);
 }
 
-TEST(CarriedTrust, WrongOneIsTakenAwayOnTrial) {
+TEST(CarriedTrust, WrongCompensationIsSwitchedOffOnTrial) {
   Tip tip{.carried = 1.9};  // 16 m/s^2 upwards
   tip.run(0.2);
   EXPECT_EQ(tip.trust.withdrawn(), 1U);
@@ -48,7 +48,7 @@ TEST(CarriedTrust, WrongOneIsTakenAwayOnTrial) {
   EXPECT_LT(tip.fastest, 1.0);
 }
 
-TEST(CarriedTrust, WrongOneThatAHandHidesMovesNoTipFast) {
+TEST(CarriedTrust, WrongCompensationHiddenByAHandIsSlow) {
   Tip tip{.carried = 1.9};
   tip.held = true;
   tip.run(3);
@@ -58,7 +58,7 @@ TEST(CarriedTrust, WrongOneThatAHandHidesMovesNoTipFast) {
   EXPECT_LT(tip.fastest, CarriedTrust::kFadeEnds + 0.05);
 }
 
-TEST(CarriedTrust, ComesBackOnceTheTipRests) {
+TEST(CarriedTrust, ReturnsOnceTheTipRests) {
   Tip tip{.carried = 1.9};
   tip.run(0.2);
   ASSERT_EQ(tip.share, 0);
@@ -70,7 +70,7 @@ TEST(CarriedTrust, ComesBackOnceTheTipRests) {
   EXPECT_EQ(tip.share, 1);
 }
 
-TEST(CarriedTrust, SlowHandDoesNotTakeItAway) {
+TEST(CarriedTrust, SlowHandDoesNotSwitchItOff) {
   Tip tip;
   tip.run(1.1);
   tip.held = true;
@@ -80,7 +80,7 @@ TEST(CarriedTrust, SlowHandDoesNotTakeItAway) {
   EXPECT_EQ(tip.trust.withdrawn(), 0U);
 }
 
-TEST(CarriedTrust, IsWholeAgainstTheMotion) {
+TEST(CarriedTrust, IsFullAgainstTheMotion) {
   Tip tip;
   tip.run(1.1);
   tip.held = true;
@@ -89,8 +89,9 @@ TEST(CarriedTrust, IsWholeAgainstTheMotion) {
   EXPECT_EQ(tip.share, 1);
 }
 
-TEST(CarriedTrust, SharesGiveNoEnergyOverAStroke) {
-  // Up and down at any speed: what the force gives on the way up it takes on the way down.
+TEST(CarriedTrust, FadingAddsNoEnergyOverAStroke) {
+  // For a stroke up and down at any speed, the force takes on the way down the energy that it gives
+  // on the way up.
   for (const double speed : {0.1, 0.4, 0.8, 2.0}) {
     CarriedTrust trust;
     driver::DeviceState state;

@@ -17,7 +17,7 @@
 #include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
-// Whole runs, and what the log holds of them.
+// Logs of whole runs.
 
 namespace thimble::session {
 namespace {
@@ -38,7 +38,7 @@ class EventLogTest : public ::testing::Test {
     return session ? std::move(session).value() : nullptr;
   }
 
-  /// Returns what was logged of the run, without the time of day.
+  /// Returns the log of the run without the time of day.
   std::vector<std::string> log() const {
     std::ifstream in(file_);
     std::vector<std::string> lines;
@@ -57,10 +57,10 @@ class EventLogTest : public ::testing::Test {
   std::atomic<bool> stop_{false};
 };
 
-TEST_F(EventLogTest, HoldsAFaultOfARunInVirtualTime) {
+TEST_F(EventLogTest, LogsAFaultInVirtualTime) {
   auto session = open();
   ASSERT_TRUE(session);
-  // Far more than the arm may give, and after half a second no number at all.
+  // Far above the arm's limit, and NaN after half a second.
   const auto law = [](const driver::DeviceState& state) noexcept {
     driver::ForceCommand command;
     command.f_T_W = {0, 0, state.tick < 500 ? 100.0 : std::nan("")};
@@ -71,14 +71,14 @@ TEST_F(EventLogTest, HoldsAFaultOfARunInVirtualTime) {
   session.reset();
   const auto lines = log();
   const std::vector<std::string> begin = {
-      "info The arm is open: .* \\(sim\\) feels two_boxes at 1000 Hz in virtual time\\.",
-      "info Limits in force: 5 N, 3 m/s, mean power 1 W over 2 s, rise 2000 N/s, soft start 0\\.3 "
+      "info The arm is open: .* \\(sim\\) runs two_boxes at 1000 Hz in virtual time\\.",
+      "info Active limits: 5 N, 3 m/s, mean power 1 W over 2 s, rise 2000 N/s, soft start 0\\.3 "
       "s .*, energy stage .*, "
       "walls "
       "of 200 N/m from \\(-110, -110, -110\\) to \\(110, 110, 110\\) mm .*, enabling input: none, "
       "feel check: simulated\\.",
-      "info tick 0, 0\\.000 s: Forces are let through\\.",
-      "debug tick 0, 0\\.000 s: The limit of the force opens\\.",
+      "info tick 0, 0\\.000 s: Forces are enabled\\.",
+      "debug tick 0, 0\\.000 s: The soft start limits the force\\.",
   };
   ASSERT_GT(lines.size(), begin.size());
   for (std::size_t i = 0; i < begin.size(); ++i) {
@@ -89,14 +89,15 @@ TEST_F(EventLogTest, HoldsAFaultOfARunInVirtualTime) {
       return std::regex_search(line, std::regex(words));
     });
   };
-  EXPECT_EQ(count("^info tick \\d+, .* s: The force is cut to the arm's limit\\.$"), 1);
-  EXPECT_EQ(count("^info tick 500, 0\\.500 s: The force was cut to the arm's limit \\d+ times"), 1);
+  EXPECT_EQ(count("^info tick \\d+, .* s: The force is limited to the arm's maximum\\.$"), 1);
+  EXPECT_EQ(
+      count("^info tick 500, 0\\.500 s: The force was limited to the arm's maximum \\d+ times"), 1);
   EXPECT_EQ(count("^error tick 500, 0\\.500 s: Force is off \\(force_not_finite\\)\\. "), 1);
   EXPECT_EQ(count("^error "), 1);
-  EXPECT_EQ(lines.back(), "info The run is over; the arm took zero force.");
+  EXPECT_EQ(lines.back(), "info The run is over; the arm accepted zero force.");
 }
 
-TEST_F(EventLogTest, HoldsNothingOfARunThatIsNotToBeLogged) {
+TEST_F(EventLogTest, LogsNothingIfDisabled) {
   options_.log = false;
   auto session = open();
   ASSERT_TRUE(session);
@@ -116,13 +117,13 @@ TEST_F(EventLogTest, RealTimeEventsKeepTheirTime) {
   session.reset();
   const auto lines = log();
   ASSERT_GE(lines.size(), 4u);
-  EXPECT_EQ(lines[1].rfind("info Limits in force: ", 0), 0u) << lines[1];
+  EXPECT_EQ(lines[1].rfind("info Active limits: ", 0), 0u) << lines[1];
   EXPECT_EQ(lines[2].rfind("info tick 0, ", 0), 0u) << lines[2];
-  EXPECT_EQ(lines.back(), "info The run is over; the arm took zero force.");
+  EXPECT_EQ(lines.back(), "info The run is over; the arm accepted zero force.");
   EXPECT_GT(passed, std::chrono::milliseconds(290));
 }
 
-TEST_F(EventLogTest, StandsInTheWayOfNoForce) {
+TEST_F(EventLogTest, DoesNotChangeForces) {
   std::vector<std::array<double, 3>> forces[2];
   for (const bool logged : {false, true}) {
     options_.log = logged;
@@ -137,11 +138,11 @@ TEST_F(EventLogTest, StandsInTheWayOfNoForce) {
   EXPECT_EQ(forces[0], forces[1]);
 }
 
-TEST_F(EventLogTest, TellsHowManyEventsItLacks) {
+TEST_F(EventLogTest, ReportsTheNumberOfLostEvents) {
   auto session = open();
   ASSERT_TRUE(session);
   {
-    // In real time the writer looks every 50 ms; a tip that chatters for 8 s of ticks meanwhile.
+    // In real time the writer checks every 50 ms. Meanwhile the tip chatters for 8 s of ticks.
     EventLog log({.name = "two_boxes", .what = "a test", .objects = {}, .real_time = true},
                  session->device());
     driver::TickRecord record;

@@ -17,7 +17,7 @@ using driver::Fault;
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
 
-/// Counters that the test counts.
+/// Counters that the test sets.
 class ScriptedCounters final : public EventCounters {
  public:
   std::uint64_t changes() const noexcept override {
@@ -33,10 +33,10 @@ class ScriptedCounters final : public EventCounters {
   std::array<double, 3> wall_W{};
 };
 
-/// A run whose ticks the test writes, 1 ms apart.
+/// Run whose ticks are created by the test, 1 ms apart.
 class EventWatchTest : public ::testing::Test {
  protected:
-  /// Lets the tick of `record_` come to pass, and begins the next one.
+  /// Passes the tick `record_` to the watch and starts the next one.
   void tick(std::uint64_t periods = 1) {
     watch_.take(record_);
     record_.tick += 1;
@@ -48,7 +48,7 @@ class EventWatchTest : public ::testing::Test {
     for (int i = 0; i < count; ++i) tick();
   }
 
-  /// Returns the events so far and forgets them.
+  /// Returns the events so far and clears them.
   std::vector<TickEvent> events() {
     std::vector<TickEvent> got;
     while (ring_.waiting() > 0) {
@@ -89,7 +89,7 @@ class EventWatchTest : public ::testing::Test {
   driver::TickRecord record_;
 };
 
-TEST_F(EventWatchTest, TellsEachStepOfAnArmsLifeOnce) {
+TEST_F(EventWatchTest, ReportsEachStageOnce) {
   ticks(2);
   EXPECT_EQ(events(), Events());
   record_.stage = DeviceStage::kActive;
@@ -112,7 +112,7 @@ TEST_F(EventWatchTest, TellsEachStepOfAnArmsLifeOnce) {
   EXPECT_EQ(events(), Events({event(12, EventKind::kDeactivated)}));
 }
 
-TEST_F(EventWatchTest, NotesALinkThatChangesAfterAnotherFault) {
+TEST_F(EventWatchTest, ReportsALinkChangeAfterAnotherFault) {
   const auto link = [](std::uint64_t tick, driver::LinkState state) {
     TickEvent event = EventWatchTest::event(tick, EventKind::kLinkChanged);
     event.link = state;
@@ -125,7 +125,7 @@ TEST_F(EventWatchTest, NotesALinkThatChangesAfterAnotherFault) {
   record_.link = driver::LinkState::kLost;
   ticks(2);
   EXPECT_EQ(events(), Events({link(2, driver::LinkState::kLost)}));
-  record_.link = driver::LinkState::kSilent;  // of a new link, before its first report
+  record_.link = driver::LinkState::kSilent;  // state of a new link before its first report
   ticks(2);
   EXPECT_EQ(events(), Events());
   record_.link = driver::LinkState::kConnected;
@@ -137,7 +137,7 @@ TEST_F(EventWatchTest, NotesALinkThatChangesAfterAnotherFault) {
   EXPECT_EQ(events(), Events({fault(8, Fault::kNoReports)})) << "which says so itself";
 }
 
-TEST_F(EventWatchTest, TellsThatAnArmIsActiveFromItsFirstTickOn) {
+TEST_F(EventWatchTest, ReportsAnArmThatIsActiveAtTheFirstTick) {
   record_.stage = DeviceStage::kActive;
   tick();
   EXPECT_EQ(events(), Events({event(0, EventKind::kActivated)}));
@@ -145,12 +145,12 @@ TEST_F(EventWatchTest, TellsThatAnArmIsActiveFromItsFirstTickOn) {
 
 TEST_F(EventWatchTest, ReportsBeginningAndEndOfAnActivity) {
   ticks(10);
-  for (int i = 0; i < 50; ++i) {  // every other tick, ten to a tick
+  for (int i = 0; i < 50; ++i) {  // ten occurrences in every other tick
     if (i % 2 == 0) counters_.of(Activity::kRiseCut) += 10;
     tick();
   }
   EXPECT_EQ(events(), Events({began(10, Activity::kRiseCut)}));
-  ticks(99);  // the last was tick 58
+  ticks(99);  // the last occurrence was in tick 58
   EXPECT_EQ(events(), Events());
   tick();
   EXPECT_EQ(events(), Events({ended(159, Activity::kRiseCut, 250, 48 * kPeriod_ns)}));
@@ -182,7 +182,7 @@ TEST_F(EventWatchTest, KeepsActivitiesApart) {
   EXPECT_EQ(events(), Events());
 }
 
-TEST_F(EventWatchTest, CountsNothingOfBeforeItsTime) {
+TEST_F(EventWatchTest, IgnoresCountsFromBeforeItsStart) {
   counters_.of(Activity::kForceCut) = 7;
   counters_.taken = 2;
   EventWatch late(counters_, kPeriod_ns, ring_);
@@ -190,9 +190,9 @@ TEST_F(EventWatchTest, CountsNothingOfBeforeItsTime) {
   EXPECT_EQ(events(), Events());
 }
 
-TEST_F(EventWatchTest, CountsTicksThatWereMissed) {
+TEST_F(EventWatchTest, CountsMissedTicks) {
   tick();
-  tick(4);  // three are missed after it
+  tick(4);  // three ticks are missed after it
   const std::int64_t missed_at = record_.time_ns;
   tick();
   tick(3);
@@ -210,7 +210,7 @@ TEST_F(EventWatchTest, CountsTicksThatWereMissed) {
   EXPECT_EQ(over[0].lasted_ns, 4 * kPeriod_ns);
 }
 
-TEST_F(EventWatchTest, TellsWhatIsTouched) {
+TEST_F(EventWatchTest, ReportsTheTouchedObject) {
   tick();
   record_.in_contact = true;
   record_.object = 1;
@@ -223,7 +223,7 @@ TEST_F(EventWatchTest, TellsWhatIsTouched) {
   EXPECT_EQ(events(), Events({touch, event(3, EventKind::kTouchEnded)}));
 }
 
-TEST_F(EventWatchTest, CountsWhatFindsNoRoomAndGoesOnAfterwards) {
+TEST_F(EventWatchTest, CountsLostEventsAndContinues) {
   SpscRing<TickEvent> small(3);
   EventWatch watch(counters_, kPeriod_ns, small);
   for (int i = 0; i < 10; ++i) {
@@ -241,7 +241,7 @@ TEST_F(EventWatchTest, CountsWhatFindsNoRoomAndGoesOnAfterwards) {
   EXPECT_EQ(watch.lost(), 7u);
 }
 
-TEST_F(EventWatchTest, AsksTheHeapForNothing) {
+TEST_F(EventWatchTest, DoesNotAllocate) {
   EXPECT_EQ(support::heap_calls_of([&] {
               for (int i = 0; i < 1000; ++i) {
                 counters_.of(Activity::kForceCut) += i % 300 == 0 ? 1 : 0;
@@ -255,7 +255,7 @@ TEST_F(EventWatchTest, AsksTheHeapForNothing) {
   EXPECT_GT(ring_.waiting(), 10u);
 }
 
-TEST(EventRing, HandsEventsFromOneThreadToAnotherInOrderAndWhole) {
+TEST(EventRing, PassesEventsBetweenThreadsInOrder) {
   SpscRing<TickEvent> ring(16);
   constexpr std::uint64_t kEvents = 20'000;
   std::thread servo([&ring] {
@@ -284,7 +284,7 @@ TEST(EventRing, HandsEventsFromOneThreadToAnotherInOrderAndWhole) {
   EXPECT_EQ(ring.waiting(), 0u);
 }
 
-TEST(EventWords, SayWhatHappenedWithTickAndTime) {
+TEST(EventWords, ContainTickAndTime) {
   const std::vector<std::string> objects{"box", "ball"};
   TickEvent event{.tick = 1234, .time_ns = 1'234'000'000, .kind = EventKind::kFault};
   event.fault = Fault::kOverSpeed;
@@ -295,8 +295,9 @@ TEST(EventWords, SayWhatHappenedWithTickAndTime) {
   event.activity = Activity::kForceCut;
   event.count = 12;
   event.lasted_ns = 34'000'000;
-  EXPECT_EQ(words_of(event, objects),
-            "tick 1234, 1.234 s: The force was cut to the arm's limit 12 times within 0.034 s.");
+  EXPECT_EQ(
+      words_of(event, objects),
+      "tick 1234, 1.234 s: The force was limited to the arm's maximum 12 times within 0.034 s.");
   event.kind = EventKind::kTouchBegan;
   event.object = 1;
   EXPECT_EQ(words_of(event, objects), "tick 1234, 1.234 s: The tip touches ball.");
@@ -304,7 +305,7 @@ TEST(EventWords, SayWhatHappenedWithTickAndTime) {
   EXPECT_EQ(words_of(event, objects), "tick 1234, 1.234 s: The tip touches an object.");
 }
 
-TEST(EventWords, WarnOfWhatTheUserShouldLookAtWhileItLasts) {
+TEST(EventWords, WarnWhileAProblemLasts) {
   TickEvent event{.kind = EventKind::kActivityBegan};
   for (const Activity activity : {Activity::kHeat, Activity::kStall, Activity::kRejected,
                                   Activity::kJumped, Activity::kRefused}) {
@@ -316,7 +317,7 @@ TEST(EventWords, WarnOfWhatTheUserShouldLookAtWhileItLasts) {
   }
 }
 
-/// The event that a stage changed the force by so many percent.
+/// Returns the event that a stage changed the force by `percent` percent.
 TickEvent changed(std::uint64_t tick, Activity activity, std::uint64_t percent) {
   return {.tick = tick,
           .time_ns = static_cast<std::int64_t>(tick) * kPeriod_ns,
@@ -325,7 +326,7 @@ TickEvent changed(std::uint64_t tick, Activity activity, std::uint64_t percent) 
           .activity = activity};
 }
 
-TEST_F(EventWatchTest, SaysOnceWhichStageChangedAForce) {
+TEST_F(EventWatchTest, ReportsAStageThatChangesAForceOnce) {
   record_.f_wanted_W = {0, 0, 2};
   record_.f_sent_W = {0, 0, 1.5};
   for (int i = 0; i < 200; ++i) {
@@ -340,7 +341,7 @@ TEST_F(EventWatchTest, SaysOnceWhichStageChangedAForce) {
   EXPECT_EQ(events(), Events({changed(200, Activity::kDamped, 25)}));
 }
 
-TEST_F(EventWatchTest, SaysNothingOfAForceThatIsHardlyChanged) {
+TEST_F(EventWatchTest, IgnoresSmallChangesOfAForce) {
   record_.f_wanted_W = {0, 0, 2};
   record_.f_sent_W = {0, 0, 1.81};
   for (int i = 0; i < 1000; ++i) {
@@ -350,7 +351,7 @@ TEST_F(EventWatchTest, SaysNothingOfAForceThatIsHardlyChanged) {
   EXPECT_EQ(events(), Events({began(0, Activity::kForceCut)}));
 }
 
-TEST_F(EventWatchTest, CountsTheTimeOfAChangeFromItsLastGap) {
+TEST_F(EventWatchTest, TimesAChangeFromItsLastInterruption) {
   record_.f_wanted_W = {0, 0, 2};
   record_.f_sent_W = {0, 0, 1};
   for (int i = 0; i < 1000; ++i) {
@@ -374,7 +375,7 @@ TEST_F(EventWatchTest, KeepsTheStrongestForceOfAWall) {
   EXPECT_EQ(events(), Events({first, last}));
 }
 
-TEST_F(EventWatchTest, ForgetsTheForceOfAWallThatPushedBefore) {
+TEST_F(EventWatchTest, ResetsTheWallForceForANewEpisode) {
   for (const double force : {3.0, 1.0}) {
     counters_.wall_W = {force, 0, 0};
     ++counters_.of(Activity::kWall);

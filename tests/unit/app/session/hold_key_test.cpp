@@ -11,14 +11,14 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-TEST(HeldKey, OnePressHoldsNothing) {
+TEST(HeldKey, OnePressDoesNotCount) {
   HeldKey key;
   key.press(1000 * kMs);
   EXPECT_LE(key.until_ns(), 1000 * kMs);
 }
 
 TEST(HeldKey, RepeatedKeyIsHeld) {
-  // Delay, then repeats: of a desktop, a Linux console, a slow one.
+  // Delay and repeat interval of a desktop, a Linux console, and a slow keyboard.
   for (const std::int64_t every : {33, 40, 92, 110}) {
     HeldKey key;
     std::int64_t now = 1000 * kMs;
@@ -39,7 +39,7 @@ TEST(HeldKey, LapsesSoonAfterTheLastPress) {
   EXPECT_EQ(key.until_ns(), (1000 + 33 * 9) * kMs + HeldKey::kLasts_ns);
 }
 
-TEST(HeldKey, SlowTypingHoldsNothing) {
+TEST(HeldKey, SlowTypingDoesNotCount) {
   HeldKey key;
   for (int i = 0; i < 20; ++i) {
     key.press((1000 + 200 * i) * kMs);
@@ -47,7 +47,7 @@ TEST(HeldKey, SlowTypingHoldsNothing) {
   }
 }
 
-TEST(ViewerKey, HoldsNothingWithoutAPicture) {
+TEST(ViewerKey, IsNotHeldWithoutAPicture) {
   ViewerKey key(7);
   key.look(7, 1000 * kMs);
   EXPECT_LE(key.until_ns(), 1000 * kMs);
@@ -79,7 +79,7 @@ TEST(HoldNamed, NamesButtonsAndTheKey) {
   EXPECT_TRUE(hold_named("key")->by_caller);
 }
 
-TEST(HoldNamed, RefusesWhatCannotBeHeld) {
+TEST(HoldNamed, RejectsUnknownNames) {
   for (const std::string name : {"foot", "button0", "button17", "Key", "buttons", "button 1"}) {
     EXPECT_TRUE(support::refuses(hold_named(name), "button2 to button16, or key")) << name;
   }

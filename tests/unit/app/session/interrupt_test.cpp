@@ -13,14 +13,14 @@ namespace thimble::session {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
-// The thread sanitizer delivers a signal only when a call that it intercepts ends.
+// The thread sanitizer delivers a signal only when a call that it intercepts returns.
 #if defined(__SANITIZE_THREAD__)
 constexpr bool kSignalsAreDelayed = true;
 #else
 constexpr bool kSignalsAreDelayed = false;
 #endif
 
-TEST(Interrupt, TakesSeveralSignalsWithinHalfASecondForOneRequest) {
+TEST(Interrupt, SignalsWithinHalfASecondAreOneRequest) {
   for (const std::int64_t since_ms : {0, 1, 10, 100, 499}) {
     EXPECT_FALSE(scene::ends_at_once(since_ms * kMs, false)) << since_ms;
     EXPECT_FALSE(scene::ends_at_once(since_ms * kMs, true)) << since_ms;
@@ -34,8 +34,8 @@ TEST(Interrupt, SecondSignalEndsAHungProgram) {
   EXPECT_TRUE(scene::ends_at_once(2000 * kMs, true));
 }
 
-/// Runs `body` in a separate process and returns how that ended: 0 to 99 its exit code, 100 + n
-/// by signal n.
+/// Runs `body` in a separate process. Returns its exit code, 0 to 99, or 100 + n if signal n ended
+/// it.
 int outcome_of(const std::function<void()>& body) {
   const pid_t child = fork();
   if (child == 0) {
@@ -64,13 +64,13 @@ TEST(Interrupt, EveryCatchableSignalSetsTheFlag) {
       case SIGILL:
       case SIGABRT:
       case SIGTRAP:
-      case SIGSYS:  // of a crash
+      case SIGSYS:  // signals of a crash
       case SIGPIPE:
-      case SIGXFSZ:  // are errors of a write
+      case SIGXFSZ:  // reported as write errors
       case SIGCHLD:
       case SIGCONT:
       case SIGURG:
-      case SIGWINCH:  // end nothing
+      case SIGWINCH:  // do not end the process
       case SIGTSTP:
       case SIGTTIN:
       case SIGTTOU:  // stop
@@ -78,7 +78,7 @@ TEST(Interrupt, EveryCatchableSignalSetsTheFlag) {
       default:
         break;
     }
-    if (number >= 32 && number < SIGRTMIN) continue;  // the C library's own
+    if (number >= 32 && number < SIGRTMIN) continue;  // used by the C library
     EXPECT_EQ(outcome_of([number] {
                 std::signal(number, SIG_DFL);
                 const auto& flag = scene::catch_interrupts();
@@ -90,7 +90,7 @@ TEST(Interrupt, EveryCatchableSignalSetsTheFlag) {
   }
 }
 
-TEST(Interrupt, OutlivesTheTerminalUnderNohup) {
+TEST(Interrupt, SurvivesHangupUnderNohup) {
   EXPECT_EQ(outcome_of([] {
               std::signal(SIGHUP, SIG_IGN);
               const auto& flag = scene::catch_interrupts();
@@ -104,7 +104,7 @@ TEST(Interrupt, OutlivesTheTerminalUnderNohup) {
               raise(SIGUSR1);
             }),
             7);
-  // What a script runs beside itself ignores these, and leaves by them all the same.
+  // A background job of a script starts with these signals ignored, but must still end by them.
   EXPECT_EQ(outcome_of([] {
               std::signal(SIGINT, SIG_IGN);
               const auto& flag = scene::catch_interrupts();
@@ -149,7 +149,7 @@ TEST(Interrupt, SigtermEndsProgramThatHangs) {
               if (pipe(ends) != 0) _exit(9);
               raise(SIGTERM);
               while (kSignalsAreDelayed) rest(10 * kMs);
-              while (read(ends[0], &byte, 1) != 1) {  // nobody writes
+              while (read(ends[0], &byte, 1) != 1) {  // there is no writer
               }
             }),
             100 + SIGTERM);
@@ -166,7 +166,7 @@ TEST(Interrupt, SigtermIsNotRepeatedWhileAnArmIsOpen) {
             7);
 }
 
-TEST(Interrupt, TakesCtrlZForARequestToLeaveWhereAnArmIsOpen) {
+TEST(Interrupt, CtrlZEndsTheProgramWhileAnArmIsOpen) {
   EXPECT_EQ(outcome_of([] {
               const auto& flag = scene::catch_interrupts();
               scene::leave_rather_than_stop();

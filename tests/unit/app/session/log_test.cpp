@@ -28,7 +28,7 @@ std::vector<std::string> lines_of(const fs::path& file) {
   return lines;
 }
 
-/// Returns what is said on standard error meanwhile.
+/// Returns the output on standard error of `work`.
 template <class Work>
 std::string said_by(Work&& work) {
   testing::internal::CaptureStderr();
@@ -44,7 +44,7 @@ class LogTest : public ::testing::Test {
     setenv("XDG_STATE_HOME", folder_.c_str(), 1);
   }
 
-  /// Says a word of each level.
+  /// Logs one message of each level.
   static void say_everything(spdlog::logger& logger) {
     logger.trace("a trace");
     logger.debug("a detail");
@@ -56,10 +56,10 @@ class LogTest : public ::testing::Test {
   fs::path folder_ = support::scratch_folder() / "log";
 };
 
-TEST_F(LogTest, ALineHasTimeLevelProcessAndWhoSaysIt) {
+TEST_F(LogTest, LineHasTimeLevelProcessAndSource) {
   const fs::path file = folder_ / "named.log";
   ASSERT_TRUE(begin_log({.file = file, .heading = "thimble 1.2: run box"}));
-  run_logger("box")->info("tick 7, 0.007 s: Forces are let through.");
+  run_logger("box")->info("tick 7, 0.007 s: Forces are enabled.");
   const auto lines = lines_of(file);
   ASSERT_EQ(lines.size(), 2u);
   const std::string time = R"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}[+-]\d\d:\d\d )";
@@ -68,12 +68,12 @@ TEST_F(LogTest, ALineHasTimeLevelProcessAndWhoSaysIt) {
       lines[0], std::regex(time + "info     " + process + " thimble: thimble 1\\.2: run box")))
       << lines[0];
   EXPECT_TRUE(std::regex_match(lines[1], std::regex(time + "info     " + process +
-                                                    " box: tick 7, 0\\.007 s: Forces are let "
-                                                    "through\\.")))
+                                                    " box: tick 7, 0\\.007 s: Forces are "
+                                                    "enabled\\.")))
       << lines[1];
 }
 
-TEST_F(LogTest, TheTerminalHearsWarningsAndErrorsUnlessToldOtherwise) {
+TEST_F(LogTest, TerminalShowsWarningsAndErrorsByDefault) {
   ASSERT_TRUE(begin_log({}));
   EXPECT_EQ(said_by([] { say_everything(logger()); }), "thimble: a warning\nthimble: an error\n");
   ASSERT_TRUE(begin_log({.talk = Talk::kQuiet}));
@@ -87,7 +87,7 @@ TEST_F(LogTest, TheTerminalHearsWarningsAndErrorsUnlessToldOtherwise) {
             "thimble: an error\n");
 }
 
-TEST_F(LogTest, WhatHappensInARunIsOnTheTerminalOnlyWhereItIsWanted) {
+TEST_F(LogTest, RunEventsAreOnTheTerminalOnlyOnRequest) {
   ASSERT_TRUE(begin_log({}));
   EXPECT_EQ(said_by([] { say_everything(*run_logger("box")); }), "");
   ASSERT_TRUE(begin_log({.talk = Talk::kDebug}));
@@ -95,14 +95,14 @@ TEST_F(LogTest, WhatHappensInARunIsOnTheTerminalOnlyWhereItIsWanted) {
             std::string::npos);
 }
 
-TEST_F(LogTest, WhatAPersonIsAskedIsShownWordByWord) {
+TEST_F(LogTest, QuestionsAreShownUnchanged) {
   for (const Talk talk : {Talk::kQuiet, Talk::kNormal, Talk::kTrace}) {
     ASSERT_TRUE(begin_log({.talk = talk}));
     EXPECT_EQ(said_by([] { terminal().info("Press Enter to begin."); }), "Press Enter to begin.\n");
   }
 }
 
-TEST_F(LogTest, TheFileHoldsAllButTracesAndThoseIfTheyAreWanted) {
+TEST_F(LogTest, FileHasTracesOnlyOnRequest) {
   ASSERT_TRUE(begin_log({}));
   said_by([] { say_everything(logger()); });
   ASSERT_EQ(default_log_file(), folder_ / "thimble" / "log" / "thimble.log");
@@ -112,7 +112,7 @@ TEST_F(LogTest, TheFileHoldsAllButTracesAndThoseIfTheyAreWanted) {
   EXPECT_EQ(lines_of(default_log_file()).size(), 1 + 4u + 1 + 5u);
 }
 
-TEST_F(LogTest, ThereIsNoFileBeforeSomethingIsSaid) {
+TEST_F(LogTest, FileIsCreatedByTheFirstMessage) {
   ASSERT_TRUE(begin_log({}));
   EXPECT_FALSE(fs::exists(default_log_file()));
 }
@@ -146,7 +146,7 @@ TEST_F(LogTest, FilesAreBoundedInSizeAndNumber) {
             std::string::npos);
 }
 
-TEST_F(LogTest, AFileThatCannotBeWrittenIsToldOnceAndEndsNothing) {
+TEST_F(LogTest, UnwritableFileIsReportedOnce) {
   std::ofstream(folder_ / "thimble") << "a file where the folder should be";
   ASSERT_TRUE(begin_log({}));
   const std::string said = said_by([] {
@@ -160,7 +160,7 @@ TEST_F(LogTest, AFileThatCannotBeWrittenIsToldOnceAndEndsNothing) {
   EXPECT_NE(said.find("thimble: two\n"), std::string::npos);
 }
 
-TEST_F(LogTest, ADiskThatFillsUpEndsTheLogAlone) {
+TEST_F(LogTest, FullDiskEndsOnlyTheLog) {
   const fs::path file = folder_ / "full.log";
   ASSERT_TRUE(begin_log({.file = file, .heading = "begin"}));
   rlimit before{};
@@ -182,7 +182,7 @@ TEST_F(LogTest, ADiskThatFillsUpEndsTheLogAlone) {
   EXPECT_GT(lines_of(file).size(), 10u);
 }
 
-TEST_F(LogTest, AFileThatTheUserNamedMustBeOneThatCanBeWritten) {
+TEST_F(LogTest, FileNamedByTheUserMustBeWritable) {
   const auto begun = begin_log({.file = "/dev/full"});
   ASSERT_FALSE(begun);
   EXPECT_EQ(begun.error().message.rfind("/dev/full: the log cannot be written there (", 0), 0u)
@@ -190,7 +190,7 @@ TEST_F(LogTest, AFileThatTheUserNamedMustBeOneThatCanBeWritten) {
   EXPECT_FALSE(begin_log({.file = folder_}));
 }
 
-// What a name from a file could do to a terminal or to a log that is shown on one.
+// Names from files must not control a terminal, directly or through a log shown on it.
 constexpr const char* kHostile = "a\x1b]0;title\a\x1b[31m\r\xC2\x9Bm\xE2\x80\xAE\xFFz";
 constexpr const char* kShown = "a?]0;title??[31m??m??z";
 

@@ -25,7 +25,7 @@ namespace {
 const std::filesystem::path kSource(THIMBLE_SOURCE_DIR);
 const std::atomic<bool> kGoesOn{false};
 
-/// A run of the rubber ball, of a file of its own, that viewers in this process look on.
+/// Run of a copy of the rubber ball's scene file, with viewers in this process.
 class NextRunTest : public ::testing::Test {
  protected:
   NextRunTest() {
@@ -37,7 +37,7 @@ class NextRunTest : public ::testing::Test {
     options_.restarts = true;
   }
 
-  /// Writes the scene with this stiffness (N/m).
+  /// Writes the scene with the given stiffness (N/m).
   void write(const std::string& stiffness) {
     std::string text = scene::text_of(kSource / "app/scenes/rubber.yaml");
     text.replace(text.find("400"), 3, stiffness);
@@ -51,7 +51,7 @@ class NextRunTest : public ::testing::Test {
             loop, speed};
   }
 
-  /// Prepares what comes next, which nobody sees yet.
+  /// Prepares the next run, not yet visible to viewers.
   driver::Result<std::unique_ptr<Session>> prepare_unseen(
       const std::filesystem::path& scene) const {
     SessionOptions unseen = options_;
@@ -69,7 +69,7 @@ class NextRunTest : public ::testing::Test {
     return hash.value();
   }
 
-  /// Returns what a run in virtual time feels that nobody looks at.
+  /// Returns the ticks of a run in virtual time without viewers.
   std::uint64_t hash_alone() const {
     SessionOptions alone;
     alone.duration = options_.duration;
@@ -82,7 +82,7 @@ class NextRunTest : public ::testing::Test {
   SessionOptions options_;
 };
 
-TEST_F(NextRunTest, BeginsAnewWithTheBitsOfAFreshRun) {
+TEST_F(NextRunTest, RestartIsBitIdentical) {
   const std::uint64_t fresh = hash_alone();
   NextRun next = next_of();
   auto session = prepare();
@@ -99,14 +99,14 @@ TEST_F(NextRunTest, BeginsAnewWithTheBitsOfAFreshRun) {
   ASSERT_TRUE(session->share(options_));
   next.begin(*session);
   EXPECT_FALSE(next.ended());
-  EXPECT_EQ(view(*session)->speed_asked(), 4) << "the pace stays as it was chosen";
+  EXPECT_EQ(view(*session)->speed_asked(), 4) << "the chosen speed is kept";
   ASSERT_TRUE(session->open_arm());
   EXPECT_EQ(session->run(next.ended()), driver::ServoEnd::kDone);
   EXPECT_EQ(hash_of(*session), fresh);
   EXPECT_FALSE(next.take(driver::ServoEnd::kDone, false)) << "it does not loop";
 }
 
-TEST_F(NextRunTest, FeelsTheSameToTheBitAtAnyPaceAndTickByTick) {
+TEST_F(NextRunTest, AnySpeedAndSingleStepsAreBitIdentical) {
   const std::uint64_t fresh = hash_alone();
   NextRun next = next_of();
   const auto session = prepare();
@@ -116,14 +116,14 @@ TEST_F(NextRunTest, FeelsTheSameToTheBitAtAnyPaceAndTickByTick) {
   EXPECT_FALSE(viewer->ask_steps(1)) << "it is not paused";
   viewer->ask_pause(true);
   std::thread servo([&] { session->run(next.ended()); });
-  // Wall time is waited for here, and never judged.
+  // The test waits in wall time but does not measure it.
   const auto wait_for = [](auto condition) {
     while (!condition()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   };
   wait_for([&] { return viewer->state() == RunState::kPaused; });
   const std::uint64_t stood = viewer->counters().ticks;
   std::this_thread::sleep_for(std::chrono::milliseconds(30));
-  EXPECT_EQ(viewer->counters().ticks, stood) << "simulated time stands";
+  EXPECT_EQ(viewer->counters().ticks, stood) << "simulated time stops";
   for (const std::uint64_t ticks : {1u, 10u, 100u}) {
     const std::uint64_t before = viewer->counters().ticks;
     EXPECT_TRUE(viewer->ask_steps(ticks));
@@ -132,14 +132,14 @@ TEST_F(NextRunTest, FeelsTheSameToTheBitAtAnyPaceAndTickByTick) {
     EXPECT_EQ(viewer->counters().ticks, before + ticks);
     EXPECT_EQ(viewer->state(), RunState::kPaused);
   }
-  // More than anybody means, written by somebody else.
+  // An implausible number of steps, as another program might write.
   auto& live = *reinterpret_cast<SharedLive*>(session->shared()->memory().bytes().data() +
                                               kSharedLiveOffset);
   const std::uint64_t before = viewer->counters().ticks;
   live.requests.steps.fetch_add(1'000'000'000);
   std::this_thread::sleep_for(std::chrono::milliseconds(30));
   EXPECT_EQ(viewer->counters().ticks, before);
-  EXPECT_EQ(viewer->counters().missed, 0u) << "what stands misses nothing";
+  EXPECT_EQ(viewer->counters().missed, 0u) << "a stopped run misses no ticks";
   EXPECT_EQ(viewer->counters().paused, 0u);
   viewer->ask_pause(false);
   EXPECT_TRUE(viewer->ask_speed(2));
@@ -150,7 +150,7 @@ TEST_F(NextRunTest, FeelsTheSameToTheBitAtAnyPaceAndTickByTick) {
   EXPECT_EQ(hash_of(*session), fresh);
 }
 
-TEST_F(NextRunTest, TakesAFileThatChangedAndGoesOnWhereItIsWrong) {
+TEST_F(NextRunTest, ReloadsAChangedFileUnlessItIsInvalid) {
   NextRun next = next_of(true);
   const auto session = prepare();
   next.begin(*session);
@@ -162,7 +162,7 @@ TEST_F(NextRunTest, TakesAFileThatChangedAndGoesOnWhereItIsWrong) {
   EXPECT_FALSE(next.ended()) << "nothing has changed";
   write("stiff");
   look();
-  EXPECT_FALSE(next.ended()) << "the run goes on";
+  EXPECT_FALSE(next.ended()) << "the run continues";
   EXPECT_NE(viewer->notice().find("ball.yaml:15: stiffness: expected"), std::string::npos)
       << viewer->notice();
   write("400");
@@ -177,7 +177,7 @@ TEST_F(NextRunTest, TakesAFileThatChangedAndGoesOnWhereItIsWrong) {
   EXPECT_EQ(changed->scene().objects[0].stiffness, 300);
 }
 
-TEST_F(NextRunTest, RunsAnotherSceneOrTellsWhyNot) {
+TEST_F(NextRunTest, RunsAnotherSceneOrReportsTheError) {
   NextRun next = next_of();
   const auto session = prepare();
   next.begin(*session);
@@ -186,7 +186,7 @@ TEST_F(NextRunTest, RunsAnotherSceneOrTellsWhyNot) {
   next.step(false);
   EXPECT_FALSE(next.ended());
   EXPECT_NE(viewer->notice().find("/nowhere/none.yaml"), std::string::npos) << viewer->notice();
-  EXPECT_FALSE(viewer->ask_restart(std::string(5000, 'x'))) << "it cannot be told whole";
+  EXPECT_FALSE(viewer->ask_restart(std::string(5000, 'x'))) << "the path is too long";
   ASSERT_TRUE(viewer->ask_restart((kSource / "app/scenes/honey.yaml").string()));
   next.step(false);
   EXPECT_TRUE(next.ended());
@@ -203,7 +203,7 @@ TEST_F(NextRunTest, KeepsRequestsMadeDuringPreparation) {
       [&](const std::filesystem::path& scene) {
         ++prepared;
         auto session = prepare_unseen(scene);
-        // While the ball is prepared, somebody asks for something else.
+        // While the ball is prepared, a viewer sends another request.
         if (prepared == 1) {
           EXPECT_TRUE(viewer->ask_restart(asked_meanwhile));
           EXPECT_TRUE(viewer->ask_loop(true));
@@ -218,12 +218,12 @@ TEST_F(NextRunTest, KeepsRequestsMadeDuringPreparation) {
   ASSERT_TRUE(viewer->ask_restart());
   next.step(false);
   EXPECT_TRUE(next.ended());
-  EXPECT_EQ(prepared, 2) << "beside the run, which goes on";
-  // The servo may run on for a while; what is asked of it now could only be lost.
+  EXPECT_EQ(prepared, 2) << "prepared while the run continues";
+  // The servo may continue for a while; requests to it would be lost now.
   EXPECT_FALSE(viewer->heard());
   const auto late = viewer->ask_restart();
   ASSERT_FALSE(late);
-  EXPECT_NE(late.error().message.find("ask again"), std::string::npos) << late.error().message;
+  EXPECT_NE(late.error().message.find("try again"), std::string::npos) << late.error().message;
   const auto then = next.take(driver::ServoEnd::kStopped, false);
   ASSERT_TRUE(then);
   EXPECT_EQ(then->scene().name, "honey");
@@ -237,7 +237,7 @@ TEST_F(NextRunTest, KeepsRequestsMadeDuringPreparation) {
   EXPECT_EQ(anew->notice(), "");
 }
 
-TEST_F(NextRunTest, TellsTheNextRunsViewersWhyTheirSceneIsNotShown) {
+TEST_F(NextRunTest, ReportsARejectedSceneToViewersOfTheNextRun) {
   std::unique_ptr<SharedReader> viewer;
   bool first = true;
   NextRun next(
@@ -255,20 +255,20 @@ TEST_F(NextRunTest, TellsTheNextRunsViewersWhyTheirSceneIsNotShown) {
   ASSERT_TRUE(viewer->ask_restart());
   next.step(false);
   const auto then = next.take(driver::ServoEnd::kStopped, false);
-  ASSERT_TRUE(then) << "what was asked before stands ready";
+  ASSERT_TRUE(then) << "the previous request is prepared";
   ASSERT_TRUE(then->share(options_));
   next.begin(*then);
   EXPECT_NE(view(*then)->notice().find("/nowhere/none.yaml"), std::string::npos);
 }
 
-TEST_F(NextRunTest, HearsWhatIsAskedBetweenTheLastTickAndTheEnd) {
+TEST_F(NextRunTest, HandlesRequestsAfterTheLastTick) {
   NextRun next = next_of();
   auto session = prepare();
   auto viewer = view(*session);
   next.begin(*session);
   ASSERT_TRUE(viewer->ask_restart());
   const auto again = next.take(driver::ServoEnd::kDone, false);
-  ASSERT_TRUE(again) << "asked after the last look beside the run";
+  ASSERT_TRUE(again) << "requested after the last check during the run";
   EXPECT_FALSE(viewer->ask_restart());
 
   session = prepare();
@@ -302,10 +302,10 @@ TEST_F(NextRunTest, PauseCarriesOverToTheNextRun) {
   ASSERT_TRUE(anew);
   ASSERT_TRUE(anew->share(options_, then->shared()));
   next.begin(*anew);
-  EXPECT_FALSE(view(*anew)->pause_asked()) << "who begins anew wants it to run";
+  EXPECT_FALSE(view(*anew)->pause_asked()) << "a restart ends the pause";
 }
 
-TEST_F(NextRunTest, KeepsThePaceThatIsAskedForBeforeItBegins) {
+TEST_F(NextRunTest, KeepsASpeedRequestedBeforeTheStart) {
   NextRun next = next_of(false, false, 4);
   const auto session = prepare();
   const auto viewer = view(*session);
@@ -316,13 +316,13 @@ TEST_F(NextRunTest, KeepsThePaceThatIsAskedForBeforeItBegins) {
   EXPECT_TRUE(viewer->loop_asked());
 }
 
-TEST_F(NextRunTest, LoopsUntilAFaultOrAPersonEndsIt) {
+TEST_F(NextRunTest, LoopsUntilAFaultOrAStop) {
   NextRun next = next_of(false, true);
   const auto session = prepare();
   const auto viewer = view(*session);
   next.begin(*session);
   EXPECT_TRUE(viewer->loop_asked());
-  EXPECT_FALSE(next.take(driver::ServoEnd::kDone, true)) << "somebody pressed Ctrl-C";
+  EXPECT_FALSE(next.take(driver::ServoEnd::kDone, true)) << "Ctrl-C was pressed";
   EXPECT_FALSE(next.take(driver::ServoEnd::kFault, false)) << "after a fault a person looks first";
   next.begin(*session);
   EXPECT_TRUE(next.take(driver::ServoEnd::kDone, false));
@@ -336,7 +336,7 @@ TEST_F(NextRunTest, LoopsUntilAFaultOrAPersonEndsIt) {
   EXPECT_TRUE(next.ended());
 }
 
-TEST_F(NextRunTest, DoesNothingOfItWithAPhysicalArm) {
+TEST_F(NextRunTest, NeverRestartsARealArm) {
   RealArmUse use;
   use.arm.kind = driver::ArmKind::kPolhem;
   use.arm.serial = "on_the_desk";
@@ -353,7 +353,7 @@ TEST_F(NextRunTest, DoesNothingOfItWithAPhysicalArm) {
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().message.find("physical arm"), std::string::npos);
   }
-  // Whatever stands in the memory.
+  // Whatever the memory contains.
   auto& live = *reinterpret_cast<SharedLive*>(session->shared()->memory().bytes().data() +
                                               kSharedLiveOffset);
   NextRun next = next_of(true, true);
@@ -365,7 +365,7 @@ TEST_F(NextRunTest, DoesNothingOfItWithAPhysicalArm) {
   EXPECT_FALSE(next.take(driver::ServoEnd::kDone, false));
 }
 
-TEST(FileWatch, WaitsUntilAFileStandsStillAndIsSomethingElse) {
+TEST(FileWatch, ReportsAFileOnceItIsStableAndDifferent) {
   const auto file = support::scratch_folder() / "watched.yaml";
   const auto write = [&file](const char* text) { std::ofstream(file) << text; };
   write("one");
@@ -377,7 +377,7 @@ TEST(FileWatch, WaitsUntilAFileStandsStillAndIsSomethingElse) {
   EXPECT_FALSE(watch.step());
   EXPECT_FALSE(watch.step());
   EXPECT_TRUE(watch.step());
-  EXPECT_FALSE(watch.step()) << "told once";
+  EXPECT_FALSE(watch.step()) << "reported once";
   EXPECT_FALSE(watch.as_at_first());
   std::filesystem::remove(file);
   for (int i = 0; i < 5; ++i) EXPECT_FALSE(watch.step()) << "an editor puts it back";
@@ -388,7 +388,7 @@ TEST(FileWatch, WaitsUntilAFileStandsStillAndIsSomethingElse) {
   EXPECT_TRUE(watch.as_at_first());
 }
 
-TEST(SpeedClock, GoesByTheWorldTimesItsSpeedAndCatchesUpALittle) {
+TEST(SpeedClock, FollowsRealTimeTimesSpeedAndCatchesUpALittle) {
   constexpr double kMillisecond = 1e6;
   EXPECT_EQ(paced_due(100 * kMillisecond, 100 * kMillisecond, kMillisecond, 1), 101 * kMillisecond);
   EXPECT_EQ(paced_due(100 * kMillisecond, 100 * kMillisecond, kMillisecond, 4),
@@ -401,7 +401,7 @@ TEST(SpeedClock, GoesByTheWorldTimesItsSpeedAndCatchesUpALittle) {
       << "too late for that";
   SpeedClock clock;
   clock.sleep_until_ns(1000);
-  EXPECT_EQ(clock.now_ns(), 1000) << "never later than asked: no tick is missed";
+  EXPECT_EQ(clock.now_ns(), 1000) << "never later than requested: no tick is missed";
   clock.sleep_until_ns(500);
   EXPECT_EQ(clock.now_ns(), 1000);
 }

@@ -1,4 +1,4 @@
-// Each observer of a session alone, fed with ticks that are written here: no arm and no scene.
+// Each observer of a session separately, with ticks created by the test, without arm and scene.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -29,7 +29,7 @@ using driver::TickRecord;
 using support::feed;
 using support::scripted_run;
 
-/// An object that moves by 1 mm a question and draws a triangle more each time.
+/// Object that moves by 1 mm and draws one more triangle with each call.
 class Drawn final : public render::ObjectTouch {
  public:
   driver::ForceCommand update(const driver::DeviceState&) noexcept override { return {}; }
@@ -96,7 +96,7 @@ TEST(DentRecord, DrawsSixtyTimesASecondAndKeepsTheDeepest) {
   feed(dents, scripted_run(1000, 100, 300));
   EXPECT_EQ(dents.drawn().drawings, 63u) << "every sixteenth tick, from tick 0";
   EXPECT_EQ(dents.drawn().patch.triangle_count, 63);
-  // Deepest in tick 200; of those that are drawn in 192 first, the thirteenth.
+  // The touch is deepest in tick 200; the deepest drawn dent is the thirteenth, of tick 192.
   EXPECT_EQ(dents.deepest().triangle_count, 13);
 }
 
@@ -135,7 +135,7 @@ TEST(RecordingSwitch, RecordsOnlyWhileSwitchedOn) {
     for (; i < 50; ++i) recording.take(run[i]);
     EXPECT_FALSE(recording.on());
     ASSERT_TRUE(recording.begin(file, small_info(), run.size(), by_thread, true));
-    // More than the ring holds: without a thread it must be emptied by the servo itself.
+    // More ticks than the ring holds: without a thread the servo must empty it.
     const std::size_t until = by_thread ? 5'000 : 19'000;
     for (; i < until; ++i) recording.take(run[i]);
     ASSERT_TRUE(recording.stop());
@@ -148,7 +148,7 @@ TEST(RecordingSwitch, RecordsOnlyWhileSwitchedOn) {
   }
 }
 
-/// A run that is shared in this process, with an object that dents and one that moves.
+/// Run shared in this process, with an object that dents and one that moves.
 struct Shared {
   Shared() {
     session::SharedScene scene;
@@ -227,7 +227,7 @@ TEST(Observers, AllocateNothingPerTick) {
                               {.dent = &dents.drawn(), .poses = &poses.now(), .shaped = {}});
   auto run = scripted_run(1000, 100, 900);
   for (std::size_t i = 950; i < run.size(); ++i) run[i].fault = driver::Fault::kOverSpeed;
-  // Counted on this thread; the recorder's own may do as it likes.
+  // Counted on this thread; the recorder's thread may allocate.
   EXPECT_EQ(support::heap_calls_of([&] {
               for (session::TickObserver* one : std::initializer_list<session::TickObserver*>{
                        &latest, &statistics, &trace, &box, &dents, &poses, &recording, &sharing}) {

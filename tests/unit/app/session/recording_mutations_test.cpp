@@ -1,5 +1,5 @@
-// Recordings with damage of every kind, the tables of HDF5 included: each is read or refused with a
-// sentence. HDF5 1.10 ends in a crash on some of them, which must not end this program.
+// Recordings with all kinds of damage, also in the tables of HDF5: each is read or rejected with an
+// error. HDF5 1.10 crashes on some of them, which must not end this program.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ std::string file_bytes(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Returns a recording of eight ticks whose bytes are all the same.
+/// Returns a recording of eight ticks in which all bytes are equal.
 std::string recording_of(int byte) {
   std::vector<driver::TickRecord> ticks(8);
   std::memset(static_cast<void*>(ticks.data()), byte, ticks.size() * sizeof ticks[0]);
@@ -41,11 +41,11 @@ std::string recording_of(int byte) {
   return file_bytes(path);
 }
 
-/// Damages recordings. What it does follows from its seed only.
+/// Damages recordings. The damage depends only on the seed.
 class Mutator {
  public:
   explicit Mutator(std::uint64_t seed) : random_(seed), sound_(recording_of(0)) {
-    // What two recordings share are tables of HDF5, names and texts.
+    // Bytes that are equal in two recordings belong to tables of HDF5, names and texts.
     const std::string other = recording_of(0xff);
     for (std::size_t i = 0; i < sound_.size(); ++i) {
       if (sound_[i] == other[i] && sound_[i] != 0) tables_.push_back(i);
@@ -64,7 +64,7 @@ class Mutator {
  private:
   std::uint64_t below(std::uint64_t end) { return random_.bits() % end; }
 
-  /// Three in four edits hit a table.
+  /// Three of four edits are in a table.
   std::size_t place(const std::string& file) {
     const std::size_t at = below(4) > 0 ? tables_[below(tables_.size())] : below(file.size());
     return std::min(at, file.size() - 1);
@@ -80,7 +80,7 @@ class Mutator {
       case 2:
         file[at] = static_cast<char>(file[at] ^ (1 << below(8)));
         return;
-      case 3:  // a length or an address that leads somewhere else
+      case 3:  // a wrong length or address
       case 4: {
         const std::array<std::uint64_t, 8> values{
             0,
@@ -99,7 +99,7 @@ class Mutator {
         }
         return;
       }
-      case 5: {  // a table where another was
+      case 5: {  // a table in the position of another
         const std::size_t from = tables_[below(tables_.size())];
         const std::size_t size = 1 + below(64);
         for (std::size_t i = 0; i < size && at + i < file.size() && from + i < sound_.size(); ++i) {
@@ -126,7 +126,7 @@ TEST(RecordingMutations, AreReadOrRefused) {
 #if defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "no threads meet here, and damaged files ask for more memory than it can give";
 #endif
-  // Each file is read in a separate process, which is the time that this test takes.
+  // Each file is read in a separate process, which takes most of the time of this test.
   const int rounds = support::long_form() ? 2000 : 150;
   Mutator mutator(support::seed_of(7364));
   ASSERT_GT(mutator.table_bytes(), 2000U);

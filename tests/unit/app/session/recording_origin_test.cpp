@@ -1,5 +1,5 @@
-// Recordings of unknown origin: whatever an HDF5 file says, no other file is read, only as much
-// memory is taken as its bytes allow, and a crash of the library is an error like any other.
+// Recordings of unknown origin. Whatever an HDF5 file contains, no other file is read. Memory is
+// bounded by the size of the file, and a crash of the library is an ordinary error.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ const session::RecordingInfo kOrigin{.scene = "box",
                                      .rate = 1000,
                                      .seed = 1};
 
-/// Returns a place where nothing is.
+/// Returns a path at which no file exists.
 fs::path scratch_file(const char* name) {
   fs::path path = support::scratch_folder() / name;
   fs::remove(path);
@@ -54,7 +54,7 @@ std::vector<TickRecord> some_ticks() {
   return ticks;
 }
 
-/// Writes a recording whose column "q" is replaced by what `make` puts into the file.
+/// Writes a recording in which `make` creates the column "q".
 fs::path with_column(const char* name, const std::function<void(hid_t file)>& make) {
   const fs::path path = scratch_file(name);
   EXPECT_TRUE(session::write_recording(path, kOrigin, some_ticks()));
@@ -64,7 +64,7 @@ fs::path with_column(const char* name, const std::function<void(hid_t file)>& ma
   return path;
 }
 
-/// Makes a data set of joint angles; `change` says how its bytes are kept. Writes `rows` rows.
+/// Creates a data set of joint angles and writes `rows` rows; `change` sets its storage.
 void make_column(hid_t file, const std::function<void(hid_t how)>& change,
                  hsize_t claimed = kRecordedTicks, bool write = true, const char* name = "q") {
   const hsize_t sizes[2] = {claimed, 3};
@@ -88,7 +88,7 @@ void expect_refused(const fs::path& path, const std::string& what) {
   EXPECT_NE(read.error().message.find(what), std::string::npos) << read.error().message;
 }
 
-/// Writes a file of numbers that no recording may show.
+/// Writes a file of numbers that must not appear in a recording.
 fs::path secret_file() {
   const fs::path path = scratch_file("secret.bin");
   std::ofstream out(path, std::ios::binary);
@@ -170,7 +170,8 @@ TEST(RecordingOrigin, CompressedColumnIsRead) {
   for (std::size_t i = 0; i < kRecordedTicks; ++i) EXPECT_EQ(read->ticks[i].q, some_ticks()[i].q);
 }
 
-/// Makes a recording of a few kilobytes that claims `claimed` ticks, none of which it stores.
+/// Makes a recording of a few kilobytes whose header states `claimed` ticks, but which contains
+/// none.
 fs::path hollow_recording(const char* name, hsize_t claimed, bool chunked) {
   const fs::path path = scratch_file(name);
   EXPECT_TRUE(session::write_recording(path, kOrigin, some_ticks()));
@@ -205,12 +206,12 @@ TEST(RecordingOrigin, ClaimsNoMoreTicksThanItStores) {
   for (const bool chunked : {false, true}) {
     const std::size_t before = peak_kilobytes();
     expect_refused(hollow_recording("hollow.h5", 30'000'000, chunked),
-                   "claims 30000000 ticks and does not hold them");
+                   "states 30000000 ticks, but it does not contain them");
     EXPECT_LT(peak_kilobytes() - before, 100'000U);
   }
 }
 
-// A whole day of ticks in a file of a few kilobytes: all of it is one hole.
+// A whole day of ticks in a file of a few kilobytes, which is one hole.
 TEST(RecordingOrigin, HoleCountsAsNoTicks) {
   const fs::path path = hollow_recording("hole.h5", 20'000'000, false);
   {
@@ -226,7 +227,7 @@ TEST(RecordingOrigin, HoleCountsAsNoTicks) {
                        H5Dclose);
     ASSERT_TRUE(set.good());
   }
-  expect_refused(path, "claims 20000000 ticks and does not hold them");
+  expect_refused(path, "states 20000000 ticks, but it does not contain them");
 }
 
 TEST(RecordingOrigin, PipeIsRefused) {
@@ -239,7 +240,7 @@ TEST(RecordingOrigin, DeviceIsRefused) {
   expect_refused("/dev/zero", "not a regular file");
 }
 
-/// Writes a recording that says it was made from another scene file.
+/// Writes a recording that names another scene file.
 session::Recording of_scene(const fs::path& scene) {
   session::RecordingInfo info = kOrigin;
   info.scene_file = scene.string();
@@ -250,7 +251,7 @@ session::Recording of_scene(const fs::path& scene) {
   return std::move(read).value();
 }
 
-// Where it could, this would take all memory of the machine.
+// Without a limit this would use all memory of the machine.
 TEST(RecordingOrigin, SceneThatIsADeviceIsNotRead) {
   const session::Recording recording = of_scene("/dev/zero");
   EXPECT_FALSE(session::check_repeatable(recording));
@@ -268,7 +269,7 @@ TEST(RecordingOrigin, SceneThatIsAPipeIsNotWaitedFor) {
   EXPECT_FALSE(session::replay(recording));
 }
 
-// What a scene names beside itself: meshes, pages, pictures, arms and bags.
+// Files to which a scene refers: meshes, pages, pictures, arms and bags.
 TEST(RecordingOrigin, FilesOfASceneThatArePipesAreRefused) {
   for (const char* name :
        {"pipe.off", "pipe.stl", "pipe.gltf", "pipe.pages", "pipe.png", "pipe.yaml", "pipe.db3"}) {

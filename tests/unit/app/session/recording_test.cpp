@@ -45,7 +45,7 @@ std::filesystem::path scratch(const char* name) {
   return support::scratch_folder() / name;
 }
 
-/// Makes a tick with something else in every field.
+/// Makes a tick with a different value in every field.
 TickRecord tick_number(std::uint64_t number) {
   std::mt19937_64 random(number + 1);
   std::uniform_real_distribution<double> value(-1, 1);
@@ -89,17 +89,17 @@ bool same(const TickRecord& a, const TickRecord& b) {
   return true;
 }
 
-TEST(RecordingColumns, HoldEveryByteOfATickButPadding) {
+TEST(RecordingColumns, ContainEveryByteOfATickExceptPadding) {
   std::size_t bytes = 0;
   for (const session::RecordingColumn& column : session::recording_columns())
     bytes += column.bytes();
   // 4 long counters, 3 counts, 24 + 3 doubles, 8 floats, a triangle, 4 short numbers, 7 flags.
   EXPECT_EQ(bytes, 4 * 8 + 3 * 4 + 27 * 8 + 8 * 4 + 4 + 4 * 2 + 7U);
-  // Padding: 4 bytes behind the counts, 5 behind the flags.
+  // Padding: 4 bytes after the counts, 5 after the flags.
   EXPECT_EQ(sizeof(TickRecord) - bytes, 9U) << "a field of TickRecord is in no column";
 }
 
-TEST(Recording, ReadsBackToTheBit) {
+TEST(Recording, ReadsBackBitIdentically) {
   const auto path = scratch("whole.h5");
   auto recorder = session::Recorder::open(path, kInfo, 3000);
   ASSERT_TRUE(recorder) << recorder.error().message;
@@ -122,13 +122,13 @@ TEST(Recording, ReadsBackToTheBit) {
   EXPECT_EQ(read->info.seed, kInfo.seed);
 }
 
-TEST(Recording, OfAnOlderProgramHasNoHeatAndNoOrientation) {
+TEST(Recording, OlderRecordingHasNoHeatAndNoOrientation) {
   const auto path = scratch("older.h5");
   auto recorder = session::Recorder::open(path, kInfo, 10);
   ASSERT_TRUE(recorder) << recorder.error().message;
   for (std::uint64_t i = 0; i < 10; ++i) (**recorder)(tick_number(i));
   ASSERT_TRUE((*recorder)->finish());
-  // The column under another name is one that nobody knows.
+  // The renamed column is unknown.
   std::ifstream in(path, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   for (const std::string column : {"heat", "q_WT", "gimbal", "gripper", "has_gripper"}) {
@@ -166,7 +166,8 @@ TEST(Recording, IsAsShortAsTheRunWas) {
   }
 }
 
-// A recording of 10 hours, killed by SIGKILL at any moment, opens and lacks less than 100 ms.
+// A recording with room for 10 hours, killed by SIGKILL at any time, can be opened and lacks less
+// than 100 ms.
 TEST(Recording, KilledRunLosesLessThan100ms) {
   for (const int ticks : {400, 437, 5'500}) {
     const auto path = scratch("killed.h5");
@@ -188,7 +189,7 @@ TEST(Recording, KilledRunLosesLessThan100ms) {
     }
     close(pipe_ends[1]);
     std::int64_t last = 0;
-    // The child tells each tick it recorded; it is killed somewhere in the middle of its work.
+    // The child reports each recorded tick; it is killed at an arbitrary time.
     for (int i = 0; i < ticks; ++i) {
       ASSERT_EQ(read(pipe_ends[0], &last, sizeof last), static_cast<ssize_t>(sizeof last));
     }
@@ -216,7 +217,7 @@ TEST(Recording, KilledRunLosesLessThan100ms) {
   }
 }
 
-TEST(Recording, OnAFullDiskEndsWithItsReasonAndKeepsWhatItHas) {
+TEST(Recording, FullDiskEndsRecordingAndKeepsTicks) {
   const auto path = scratch("full.h5");
   const pid_t child = fork();
   if (child == 0) {
@@ -224,13 +225,13 @@ TEST(Recording, OnAFullDiskEndsWithItsReasonAndKeepsWhatItHas) {
     if (!recorder) _exit(2);
     for (std::uint64_t i = 0; i < 1000; ++i) (**recorder)(tick_number(i));
     (*recorder)->serve();
-    // From here on the system refuses to write beyond the file's first bytes, as a full disk does.
+    // From here on the system rejects writes beyond the first bytes of the file, as on a full disk.
     std::signal(SIGXFSZ, SIG_IGN);
     const rlimit none{1, 1};
     if (setrlimit(RLIMIT_FSIZE, &none) != 0) _exit(3);
     for (std::uint64_t i = 1000; i < 20'000; ++i) {
       (**recorder)(tick_number(i));
-      if (i % 100 == 0) (*recorder)->serve();  // finds room, whatever the disk says
+      if (i % 100 == 0) (*recorder)->serve();  // the ring has room, whatever the disk reports
     }
     if ((*recorder)->dropped() != 0) _exit(4);
     const auto finished = (*recorder)->finish();
@@ -250,7 +251,7 @@ TEST(Recording, OnAFullDiskEndsWithItsReasonAndKeepsWhatItHas) {
   EXPECT_FALSE(std::filesystem::exists(scratch("full.thimble-part.h5")));
 }
 
-TEST(Recording, BeyondItsLongestTimeIsNotComplete) {
+TEST(Recording, BeyondItsMaximumDurationIsIncomplete) {
   const auto path = scratch("longest.h5");
   auto recorder = session::Recorder::open(path, kInfo, 100);
   ASSERT_TRUE(recorder);
@@ -273,7 +274,7 @@ constexpr bool kForksBesideThreads = false;
 constexpr bool kForksBesideThreads = true;
 #endif
 
-// The first room is small, so that the file grows many times.
+// The initial capacity is small, so that the file grows many times.
 TEST(Recording, GrowsAsItIsWritten) {
   const auto path = scratch("grows.h5");
   constexpr std::uint64_t kTicks = 5000;
@@ -287,7 +288,7 @@ TEST(Recording, GrowsAsItIsWritten) {
       const auto appended = file->append(ticks);
       ASSERT_TRUE(appended) << appended.error().message;
       ticks.clear();
-      // It can be read at any moment, also while a thread lays out the larger file.
+      // The file can be read at any time, also while a thread creates the larger one.
       if (kForksBesideThreads && i % 1000 > 976) {
         const auto now = session::read_recording(path);
         ASSERT_TRUE(now) << now.error().message;
@@ -323,8 +324,8 @@ TEST(Recording, IsReadWhileAnotherThreadMakesOne) {
   EXPECT_EQ(refused, 0);
 }
 
-// A file system without holes (FAT) has no room for a whole day at once.
-TEST(Recording, OfAWholeDayBeginsSmall) {
+// A file system without sparse files (FAT) has no space for a whole day at once.
+TEST(Recording, WholeDayStartsWithASmallFile) {
   const auto path = scratch("day.h5");
   const auto recorder = session::Recorder::open(path, kInfo, 86'400'000);
   ASSERT_TRUE(recorder) << recorder.error().message;
@@ -416,7 +417,7 @@ TEST(Recording, Hdf5FileOfAnotherProgramIsKept) {
   EXPECT_EQ(std::filesystem::file_size(path), size);
 }
 
-TEST(Recording, CountsTicksThatFindNoRoomAndNeverWaits) {
+TEST(Recording, CountsDroppedTicksAndNeverWaits) {
   auto recorder = session::Recorder::open(scratch("slow.h5"), kInfo, 100'000);
   ASSERT_TRUE(recorder);
   for (std::uint64_t i = 0; i < session::Recorder::kRingTicks + 10; ++i)
@@ -428,7 +429,7 @@ TEST(Recording, CountsTicksThatFindNoRoomAndNeverWaits) {
   EXPECT_FALSE(session::read_recording(scratch("slow.h5"))->complete);
 }
 
-TEST(Recording, ThatCannotBeWrittenSaysWhere) {
+TEST(Recording, UnwritableRecordingReportsThePath) {
   const auto refused = session::Recorder::open("/proc/no/such/place.h5", kInfo, 10);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("/proc/no/such/place.h5"), std::string::npos);
@@ -452,7 +453,7 @@ TEST(Recording, FileOfAnotherKindIsKept) {
 
 TEST(Recording, IsReplacedOnlyIfThatIsAllowed) {
   const auto again = scratch("again.h5");
-  std::ofstream(again).flush();  // an empty file holds nothing to lose
+  std::ofstream(again).flush();  // an empty file contains nothing to lose
   EXPECT_TRUE(session::Recorder::open(again, kInfo, 10));
   const auto refused = session::Recorder::open(again, kInfo, 10);
   ASSERT_FALSE(refused);
@@ -460,7 +461,7 @@ TEST(Recording, IsReplacedOnlyIfThatIsAllowed) {
   EXPECT_TRUE(session::Recorder::open(again, kInfo, 10, true));
 }
 
-TEST(Recording, TellsNamesThatCannotMoveATerminal) {
+TEST(Recording, NamesContainNoControlCharacters) {
   const auto path = scratch("escapes.h5");
   session::RecordingInfo info = kInfo;
   info.scene = "red \x1b[31m bell \a wide \302\23331m \303\244";
@@ -475,7 +476,7 @@ TEST(Recording, TellsNamesThatCannotMoveATerminal) {
   EXPECT_EQ(read->info.scene_text, info.scene_text);
 }
 
-TEST(Recording, SaysWhatAFileIsNot) {
+TEST(Recording, RejectsFilesOfOtherKinds) {
   EXPECT_NE(session::read_recording(scratch("none.h5")).error().message.find("no such file"),
             std::string::npos);
   std::ofstream(scratch("text.h5")) << "not a recording";
@@ -483,7 +484,7 @@ TEST(Recording, SaysWhatAFileIsNot) {
             std::string::npos);
 }
 
-// Whatever byte of a recording is wrong: it is read, or refused with a sentence.
+// A recording with any damaged byte is read or rejected with an error.
 TEST(Recording, WithAnyByteDamagedIsReadOrRefused) {
 #if defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "no threads meet here, and damaged files ask for more memory than it can give";
@@ -513,7 +514,7 @@ TEST(Recording, WithAnyByteDamagedIsReadOrRefused) {
       EXPECT_LE(read->ticks.size(), 4U);
     }
   }
-  // A damaged number is read, and an unsound tick left out; only a damaged table is refused.
+  // A damaged number is read, and an invalid tick is omitted; only a damaged table is an error.
   EXPECT_GT(refused, 0);
 }
 
@@ -533,7 +534,7 @@ TEST(Recording, CutShortAnywhereIsReadOrRefused) {
   }
 }
 
-TEST(Csv, HoldsEveryNumberToTheBit) {
+TEST(Csv, NumbersAreBitIdentical) {
   session::Recording recording;
   recording.info = kInfo;
   TickRecord tick = tick_number(7);
@@ -565,7 +566,7 @@ TEST(Csv, HoldsEveryNumberToTheBit) {
   EXPECT_EQ(cells.front(), "7");
 }
 
-TEST(BlackBox, KeepsTheSecondsBeforeAFaultUntilTheyAreTaken) {
+TEST(BlackBox, KeepsTheSecondsBeforeAFaultUntilReleased) {
   session::BlackBox box(1000);
   TickRecord tick;
   const auto run = [&](int ticks, driver::Fault fault) {
@@ -578,7 +579,7 @@ TEST(BlackBox, KeepsTheSecondsBeforeAFaultUntilTheyAreTaken) {
   run(20'000, driver::Fault::kNone);
   EXPECT_FALSE(box.full());
   EXPECT_TRUE(box.release().empty());
-  run(30'000, driver::Fault::kOverSpeed);  // long after the fault nothing is overwritten
+  run(30'000, driver::Fault::kOverSpeed);  // nothing is overwritten long after the fault
   ASSERT_TRUE(box.full());
   const auto kept = box.release();
   ASSERT_EQ(kept.size(), 8500U);
@@ -586,7 +587,7 @@ TEST(BlackBox, KeepsTheSecondsBeforeAFaultUntilTheyAreTaken) {
   EXPECT_EQ(kept.back().tick, 20'500U);
   EXPECT_EQ(kept[kept.size() - 502].fault, driver::Fault::kNone);
   EXPECT_EQ(kept[kept.size() - 501].fault, driver::Fault::kOverSpeed);
-  run(1000, driver::Fault::kOverSpeed);  // the same fault is not told twice
+  run(1000, driver::Fault::kOverSpeed);  // the same fault is not reported twice
   EXPECT_FALSE(box.full());
   run(1000, driver::Fault::kNone);
   run(10, driver::Fault::kNoReports);  // the run ends soon after a second fault
@@ -596,7 +597,7 @@ TEST(BlackBox, KeepsTheSecondsBeforeAFaultUntilTheyAreTaken) {
   EXPECT_EQ(second.back().fault, driver::Fault::kNoReports);
 }
 
-TEST(Recording, AsksTheHeapForNothingPerTick) {
+TEST(Recording, DoesNotAllocatePerTick) {
   auto recorder = session::Recorder::open(scratch("quiet.h5"), kInfo, 1000);
   ASSERT_TRUE(recorder);
   session::BlackBox box(1000);

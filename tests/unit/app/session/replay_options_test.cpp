@@ -1,5 +1,5 @@
-// What changes the answer of a scene beyond its file is in the recording, so that a replay repeats
-// it.
+// A recording contains every option that changes the forces of a scene, so that a replay repeats
+// them.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ class ReplayOptions : public ::testing::Test {
  protected:
   void SetUp() override { std::filesystem::current_path(THIMBLE_SOURCE_DIR); }
 
-  /// Runs a session; between its ticks `meanwhile` may act. Returns its recording.
+  /// Runs a session and calls `meanwhile` between the ticks. Returns its recording.
   template <class Meanwhile>
   static session::Recording recorded(const std::string& scene, session::SessionOptions options,
                                      Meanwhile&& meanwhile) {
@@ -89,7 +89,7 @@ TEST_F(ReplayOptions, TurnedKnobRepeats) {
           return knob.name.find("stiffness") != std::string::npos;
         });
         ASSERT_NE(stiffness, knobs.end());
-        // Turned, turned back on its way, and turned in contact.
+        // Changed, reversed during the change, and changed in contact.
         if (tick == 500) {
           EXPECT_TRUE(run.turn_knob(stiffness->name, stiffness->most));
         }
@@ -99,7 +99,7 @@ TEST_F(ReplayOptions, TurnedKnobRepeats) {
       });
   const auto turned = std::count_if(recording.ticks.begin(), recording.ticks.end(),
                                     [](const auto& tick) { return tick.setting >= 0; });
-  EXPECT_EQ(turned, 2);  // the third is where it was already
+  EXPECT_EQ(turned, 2);  // the third has this value already
   expect_repeats(recording);
 }
 
@@ -128,7 +128,7 @@ TEST_F(ReplayOptions, CarriedWeightRepeats) {
   expect_repeats(recording);
 }
 
-TEST_F(ReplayOptions, LawOfAProgramIsNoRepeatableRun) {
+TEST_F(ReplayOptions, LawOfAProgramIsNotRepeatable) {
   const auto path = support::scratch_folder() / "law.h5";
   auto opened = session::Session::open("box", {.duration = 0.1, .record = path});
   ASSERT_TRUE(opened);
@@ -144,7 +144,7 @@ TEST_F(ReplayOptions, LawOfAProgramIsNoRepeatableRun) {
   ASSERT_TRUE(recording) << recording.error().message;
   const auto repeatable = session::check_repeatable(*recording);
   ASSERT_FALSE(repeatable);
-  EXPECT_NE(repeatable.error().message.find("a program's law"), std::string::npos);
+  EXPECT_NE(repeatable.error().message.find("came from a program"), std::string::npos);
 }
 
 TEST_F(ReplayOptions, SceneThatAProgramChangedIsNotRepeatable) {
@@ -160,7 +160,7 @@ TEST_F(ReplayOptions, UnknownQualityIsRefused) {
   EXPECT_FALSE(session::Session::open("box", {.quality = "best"}));
 }
 
-TEST(RunChoices, ReadBackWithAllBits) {
+TEST(RunChoices, ReadBackBitIdentically) {
   const session::RunChoices choices{
       .quality = "auto", .budget = 0.1 + 0.2, .rate_factor = 1.0 / 3, .adjusted = true};
   const auto read = session::run_choices(text_of(choices));
@@ -171,7 +171,7 @@ TEST(RunChoices, ReadBackWithAllBits) {
   EXPECT_TRUE(read->adjusted);
 }
 
-TEST(RunChoices, RefuseWhatThisProgramDoesNotKnow) {
+TEST(RunChoices, RejectUnknownOptions) {
   for (const char* text : {"gravity: 2\n", "quality: best\n", "budget: -1\n", "budget: nan\n",
                            "rate_factor: 1x\n", "quality\n", "adjusted: no\n"}) {
     EXPECT_FALSE(session::run_choices(text)) << text;

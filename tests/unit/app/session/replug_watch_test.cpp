@@ -15,18 +15,19 @@ namespace {
 
 using driver::Fault;
 
-/// A loop over an arm that pushes all the time, watched over ten times a second of its own time.
+/// Loop of an arm with a constant force, with a watch that checks ten times per second of the
+/// loop's time.
 class ReplugWatchTest : public ::testing::Test {
  protected:
-  /// What is true of one wire.
+  /// State of one link.
   struct Wire {
     std::array<std::int16_t, 6> counts{};
     bool lost = false;
     bool silent = false;
-    int carried_to = -1;  // the hand carries the first counter there; below 0: nowhere
+    int carried_to = -1;  // the hand moves the first counter there; below 0: no motion
 
     void carry() {
-      constexpr int kStep = 30;  // counts a tick: 0.7 m/s
+      constexpr int kStep = 30;  // counts per tick: 0.7 m/s
       if (carried_to < 0) return;
       counts[0] = static_cast<std::int16_t>(counts[0] +
                                             std::clamp(carried_to - int{counts[0]}, -kStep, kStep));
@@ -92,7 +93,7 @@ class ReplugWatchTest : public ::testing::Test {
                           .tell = [this](const std::string& line) { told_.push_back(line); }});
   }
 
-  /// Runs 100 ticks of a millisecond, then lets the watch look once; `times` times.
+  /// Runs 100 ticks of a millisecond, then one check of the watch; `times` times.
   void pass(int times) {
     struct Push {
       driver::ForceCommand operator()(const driver::DeviceState&) noexcept {
@@ -134,18 +135,18 @@ class ReplugWatchTest : public ::testing::Test {
   std::vector<std::string> told_;
 };
 
-TEST_F(ReplugWatchTest, AsksForTheHomePoseAndGivesForceOnlyThere) {
+TEST_F(ReplugWatchTest, EnablesForcesOnlyAtTheHomePose) {
   pass(5);
   EXPECT_GT(force(), 0.4);
   first_.lost = true;
   pass(2);
   EXPECT_TRUE(told("Force is off (transport_lost)"));
   EXPECT_EQ(force(), 0);
-  second_.counts = {1500, 0, 0, 0, 0, 0};  // plugged in where it was not at home, then put there
+  second_.counts = {1500, 0, 0, 0, 0, 0};  // connected away from its home pose, then moved there
   plugged_ = true;
   pass(12);
   EXPECT_EQ(opened_, 1);
-  EXPECT_TRUE(told("Put it into its home pose and press Enter"));
+  EXPECT_TRUE(told("Move it to its home pose and press Enter"));
   EXPECT_FALSE(told("as before"));
   enter_ = true;
   pass(3);
@@ -154,7 +155,7 @@ TEST_F(ReplugWatchTest, AsksForTheHomePoseAndGivesForceOnlyThere) {
   EXPECT_EQ(last_.fault, Fault::kTransportLost);
   second_.counts = {50, 0, 0, 0, 0, 0};
   pass(3);
-  EXPECT_EQ(force(), 0) << "nobody pressed Enter";
+  EXPECT_EQ(force(), 0) << "Enter was not pressed";
   enter_ = true;
   pass(6);
   EXPECT_GT(force(), 0.4);
@@ -168,7 +169,7 @@ TEST_F(ReplugWatchTest, SelfHomingArmNeedsOnlyTheWorkspace) {
   plugged_ = true;
   second_.counts = {1500, 0, 0, 0, 0, 0};
   pass(12);
-  EXPECT_TRUE(told("found its zero again"));
+  EXPECT_TRUE(told("has found its zero"));
   enter_ = true;
   pass(6);
   EXPECT_GT(force(), 0.4);
@@ -183,21 +184,21 @@ TEST_F(ReplugWatchTest, ChecksTheWorkspaceAfterAnyFault) {
   pass(3);
   EXPECT_TRUE(told("outside of the workspace"));
   EXPECT_EQ(force(), 0);
-  first_.carried_to = 1500;  // inside, and not at home: it kept its counters
+  first_.carried_to = 1500;  // inside, and not at home: its counters did not restart
   pass(6);
   enter_ = true;
   pass(6);
   EXPECT_GT(force(), 0.4);
 }
 
-TEST_F(ReplugWatchTest, FindsAnArmThatIsPulledAfterAnotherFault) {
+TEST_F(ReplugWatchTest, FindsAnArmDisconnectedAfterAnotherFault) {
   pass(5);
   device_->trip(Fault::kOverSpeed);
   pass(2);
   EXPECT_TRUE(told("Force is off (over_speed)"));
   first_.lost = true;
   pass(2);
-  EXPECT_TRUE(told("The arm is gone."));
+  EXPECT_TRUE(told("The arm is disconnected."));
   enter_ = true;
   pass(1);
   EXPECT_EQ(force(), 0);
@@ -206,8 +207,8 @@ TEST_F(ReplugWatchTest, FindsAnArmThatIsPulledAfterAnotherFault) {
   EXPECT_EQ(opened_, 1);
   EXPECT_EQ(last_.fault, Fault::kOverSpeed);
   EXPECT_EQ(last_.link, driver::LinkState::kConnected);
-  EXPECT_TRUE(told("Put it into its home pose and press Enter"));
-  EXPECT_EQ(force(), 0) << "nobody pressed Enter";
+  EXPECT_TRUE(told("Move it to its home pose and press Enter"));
+  EXPECT_EQ(force(), 0) << "Enter was not pressed";
   enter_ = true;
   pass(6);
   EXPECT_GT(force(), 0.4);
@@ -231,30 +232,30 @@ TEST_F(ReplugWatchTest, FindsAnArmWhoseLossTheKernelReportsLate) {
   EXPECT_GT(force(), 0.4);
 }
 
-TEST_F(ReplugWatchTest, AsksForTheHomePoseAfterARestartOfTheBoard) {
+TEST_F(ReplugWatchTest, BoardRestartRequiresTheHomePose) {
   first_.counts = {1500, 800, 0, 0, 0, 0};
   pass(5);
   EXPECT_GT(force(), 0.4);
   first_.silent = true;
   pass(5);
-  first_.counts = {0, 0, 0, 0, 0, 0};  // where it stands, 42 mm away from its home pose
+  first_.counts = {0, 0, 0, 0, 0, 0};  // in its pose, 42 mm away from its home pose
   first_.silent = false;
   pass(1);
-  EXPECT_TRUE(told("Put it into its home pose and press Enter"));
+  EXPECT_TRUE(told("Move it to its home pose and press Enter"));
   first_.counts = {1500, 800, 0, 0, 0, 0};  // the user moves it
   pass(2);
   enter_ = true;
   pass(6);
   EXPECT_TRUE(told("mm away from its home pose"));
   EXPECT_EQ(force(), 0) << "its tip and its Jacobian are wrong";
-  first_.counts = {};  // put into its home pose, and switched on again there
+  first_.counts = {};  // moved to its home pose and switched on there
   pass(2);
   enter_ = true;
   pass(6);
   EXPECT_GT(force(), 0.4);
 }
 
-TEST_F(ReplugWatchTest, FindsAnArmThatIsPulledAgainBeforeItGotAForce) {
+TEST_F(ReplugWatchTest, FindsAnArmDisconnectedTwice) {
   pass(5);
   first_.lost = true;
   plugged_ = true;
@@ -263,7 +264,7 @@ TEST_F(ReplugWatchTest, FindsAnArmThatIsPulledAgainBeforeItGotAForce) {
   second_.lost = true;
   plugged_ = false;
   pass(15);
-  EXPECT_TRUE(told("gone again"));
+  EXPECT_TRUE(told("disconnected again"));
   enter_ = true;
   pass(3);
   EXPECT_EQ(force(), 0);

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A session with two arms whose black boxes are filled by hand.
+/// Session with two arms whose black boxes are filled by the test.
 class BlackBoxesTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -35,7 +35,7 @@ class BlackBoxesTest : public ::testing::Test {
   void TearDown() override { unsetenv("XDG_STATE_HOME"); }
 
   session::BlackBox& box(std::size_t arm) { return session_->records(arm).kept->black_box; }
-  /// Fills the box of an arm as its servo does: `after` ticks from a fault on.
+  /// Fills the black box of an arm as its servo does, with `after` ticks from a fault on.
   void fail(std::size_t arm, int after) {
     driver::TickRecord tick;
     tick.fault = driver::Fault::kOverSpeed;
@@ -58,7 +58,7 @@ class BlackBoxesTest : public ::testing::Test {
   fs::path faults_;
 };
 
-constexpr int kFull = 100'000;  // ticks: more than a box takes after a fault
+constexpr int kFull = 100'000;  // ticks: more than a black box stores after a fault
 
 TEST_F(BlackBoxesTest, LaterArmIsSavedDuringRun) {
   fail(1, kFull);

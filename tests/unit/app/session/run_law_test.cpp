@@ -1,4 +1,4 @@
-// The force law of a run: which stages a tick has, and in which order.
+// The force law of a run: its stages and their order.
 #include "run_law.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// An object that pushes with 1 N along x, and counts how often it is asked.
+/// Object that pushes with 1 N along x and counts its calls.
 class Pusher final : public render::ObjectTouch {
  public:
   explicit Pusher(int& asked) : asked_(asked) {}

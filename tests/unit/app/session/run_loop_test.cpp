@@ -1,5 +1,4 @@
-// The loop of a run over a wire that is written here: who is told of a tick, when and in which
-// order.
+// The loop of a run over a link of the test: when and in which order its observers are called.
 #include "run_loop.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +16,7 @@
 namespace thimble {
 namespace {
 
-/// A wire whose arm always reports to be at home.
+/// Link of an arm that always reports its home pose.
 class HomeTransport final : public driver::Transport {
  public:
   explicit HomeTransport(int& messages) : messages_(messages) {}
@@ -37,7 +36,7 @@ class HomeTransport final : public driver::Transport {
 
 class RunLoopTest : public ::testing::Test {
  protected:
-  /// Notes in which order observers were told, and what had been sent by then.
+  /// Records the order of the observers' calls, and the messages sent before.
   class Witness final : public session::TickObserver {
    public:
     Witness(RunLoopTest& test, int number) : test_(test), number_(number) {}
@@ -99,12 +98,13 @@ TEST_F(RunLoopTest, ObserversRunInOrderAfterTheForce) {
   for (std::size_t i = 0; i < told_.size(); ++i) {
     EXPECT_EQ(told_[i].tick, i / 2);
     EXPECT_EQ(told_[i].observer, i % 2 == 0 ? 1 : 2);
-    EXPECT_EQ(told_[i].messages - before, static_cast<int>(i / 2 + 1)) << "sent before it is told";
+    EXPECT_EQ(told_[i].messages - before, static_cast<int>(i / 2 + 1))
+        << "sent before the observers are called";
     EXPECT_NEAR(told_[i].force, static_cast<double>(i / 2) / 60, 1e-12) << "the gate's soft start";
   }
 }
 
-TEST_F(RunLoopTest, TellsNobodyOnceItIsOver) {
+TEST_F(RunLoopTest, DoesNotCallObserversAfterItsEnd) {
   auto law = [](const driver::DeviceState&) noexcept { return driver::ForceCommand{}; };
   Witness witness(*this, 1);
   session::RunLoop loop;

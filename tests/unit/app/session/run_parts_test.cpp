@@ -1,5 +1,5 @@
-// What `thimble run` does around a run, part by part: which arm, whether a viewer opens, what the
-// user is told, and how the program ends.
+// Parts of `thimble run` outside of the run: choice of the arm, opening of a viewer, messages to
+// the user, and exit code.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -16,7 +16,7 @@ namespace {
 
 using session::ViewerChoice;
 
-TEST(ChooseRunArm, LooksForNoBoardWhereTheSimulatedArmIsAskedFor) {
+TEST(ChooseRunArm, SimulatedArmNeedsNoBoardSearch) {
   int looks = 0;
   const auto find = [&] {
     ++looks;
@@ -41,7 +41,7 @@ TEST(ChooseRunArm, ReportsSimulationAndUnknownNames) {
     ASSERT_TRUE(automatic) << automatic.error().message;
     EXPECT_FALSE(automatic->real || automatic->terms);
     ASSERT_EQ(automatic->told.size(), 1u);
-    EXPECT_EQ(automatic->told[0], "No arm is plugged in: the simulated one is used.");
+    EXPECT_EQ(automatic->told[0], "No arm is connected: the simulated arm is used.");
     EXPECT_FALSE(session::choose_run_arm("S1", {}, find));
   }
 }
@@ -79,14 +79,14 @@ TEST(ChooseRunArms, GivesEachArmOfASceneItsOwnBoard) {
     const auto arms = session::choose_run_arms(devices, request, find);
     return arms ? std::string("taken") : arms.error().message;
   };
-  EXPECT_NE(refused({"left=S1", "right=S1"}).find("\"left\" and \"right\" would both be S1"),
+  EXPECT_NE(refused({"left=S1", "right=S1"}).find("\"left\" and \"right\" are both assigned to S1"),
             std::string::npos);
   EXPECT_NE(refused({"left=S1", "S2"}).find("NAME=S2"), std::string::npos);
   EXPECT_NE(refused({"left=S1", "left=S2"}).find("\"left\" twice"), std::string::npos);
   EXPECT_NE(refused({"left=auto"}).find("The arm \"left\": "), std::string::npos) << "which of two";
 }
 
-TEST(OpensViewer, WhereItIsAskedForOrAPersonWatchesInRealTime) {
+TEST(OpensViewer, OnRequestOrForARealTimeRunAtATerminal) {
   EXPECT_TRUE(session::opens_viewer(ViewerChoice::kAsked, false, true, false));
   EXPECT_FALSE(session::opens_viewer(ViewerChoice::kAsked, true, false, true)) << "no screen";
   EXPECT_TRUE(session::opens_viewer(ViewerChoice::kIfWatched, true, true, true));
@@ -95,7 +95,7 @@ TEST(OpensViewer, WhereItIsAskedForOrAPersonWatchesInRealTime) {
   EXPECT_FALSE(session::opens_viewer(ViewerChoice::kNever, true, true, true));
 }
 
-TEST(ProgressLine, TellsTimeTouchForceAndDepth) {
+TEST(ProgressLine, ShowsTimeContactForceAndDepth) {
   const auto run = support::scripted_run(1000, 100, 300);
   EXPECT_EQ(session::progress_line(run[200], 20),
             "   0.2 of 20.0 s   touching  force  0.80 N   depth  1.00 mm ");
@@ -103,7 +103,7 @@ TEST(ProgressLine, TellsTimeTouchForceAndDepth) {
             "   0.1 s   free      force  0.00 N   depth  0.00 mm ");
 }
 
-TEST(HeatWarning, IsGivenOnceWithTheFirstTickThatIsSoHot) {
+TEST(HeatWarning, IsGivenOnceAtTheFirstTickAboveTheLimit) {
   auto run = support::scripted_run(10, 0, 10);
   for (std::size_t i = 0; i < run.size(); ++i) run[i].heat = {0, 0.1 * static_cast<double>(i), 0};
   session::HeatWarning warning;
@@ -112,11 +112,11 @@ TEST(HeatWarning, IsGivenOnceWithTheFirstTickThatIsSoHot) {
     if (const std::string text = warning.look(tick); !text.empty()) given.push_back(text);
   }
   ASSERT_EQ(given.size(), 1u);
-  EXPECT_EQ(given[0].find("A motor is at 80 % of the heat it bears;"), 0u) << given[0];
+  EXPECT_EQ(given[0].find("A motor is at 80 % of its heat limit;"), 0u) << given[0];
   EXPECT_TRUE(warning.look(run.back()).empty());
 }
 
-TEST(ExitCode, TellsHowARunEnded) {
+TEST(ExitCode, DependsOnTheEndOfTheRun) {
   using driver::Fault;
   using driver::ServoEnd;
   EXPECT_EQ(cli::exit_code_of(ServoEnd::kDone, Fault::kNone, false), cli::kExitDone);

@@ -44,7 +44,7 @@ TEST(Histogram, HoldsEachValueInABinNarrowerThanOnePercent) {
   }
 }
 
-TEST(Histogram, ClampsWhatIsOutOfItsRange) {
+TEST(Histogram, ClampsValuesOutOfRange) {
   session::Histogram histogram;
   histogram.add(-5);
   histogram.add(session::Histogram::kMax_ns + 1);
@@ -78,7 +78,7 @@ TEST(RunStatistics, CountsTouchDownsAndTimeInContact) {
     statistics.take(tick(i * 1'000'000LL, touching));
   }
   EXPECT_EQ(statistics.contacts(), 3U);
-  EXPECT_EQ(statistics.interruptions(), 1U);  // 5 ms of air are no lifting off
+  EXPECT_EQ(statistics.interruptions(), 1U);  // 5 ms without contact do not count as lifting off
   EXPECT_NEAR(statistics.contact_time(), 0.395, 1e-12);
   EXPECT_NEAR(statistics.duration(), 0.999, 1e-12);
   EXPECT_NEAR(statistics.rate(), 1000, 1e-9);
@@ -93,7 +93,7 @@ TEST(RunStatistics, CountsAContactFromTheFirstTickOn) {
   EXPECT_EQ(statistics.interruptions(), 0U);
 }
 
-TEST(RunStatistics, GivesEnergyByTheForceThatActedDuringEachStep) {
+TEST(RunStatistics, EnergyUsesTheForceThatActedInEachStep) {
   // f = (1, 2, 0) N in tick 0 acts while the tip moves by (3, 4, 5) mm: 11 mJ to the hand; the
   // force of tick 1 acts while it moves back by half: -(1.5 * 4) mJ.
   session::RunStatistics statistics;

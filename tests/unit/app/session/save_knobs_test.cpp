@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 const fs::path kSources(THIMBLE_SOURCE_DIR);
 
-/// Runs of scenes whose files are a user's own, and the user's own folder.
+/// Runs of scene files of the user, with the user's scene folder.
 class SaveKnobs : public ::testing::Test {
  protected:
   SaveKnobs() {
@@ -39,7 +39,7 @@ class SaveKnobs : public ::testing::Test {
     return file;
   }
 
-  /// Shows a scene's run and returns its viewer.
+  /// Shares a run of a scene and returns its viewer.
   SharedReader& view(const fs::path& file) {
     reader_.reset();
     session_ = Session::prepare(file, {.share = true}).value();
@@ -60,7 +60,7 @@ class SaveKnobs : public ::testing::Test {
   std::unique_ptr<SharedReader> reader_;
 };
 
-TEST_F(SaveKnobs, GoRoundBesideTheSceneWithItsComments) {
+TEST_F(SaveKnobs, SavesACopyWithTheSceneAndKeepsComments) {
   const fs::path file = own("rubber");
   const std::string before = scene::text_of(file);
   SharedReader& reader = view(file);
@@ -80,14 +80,14 @@ TEST_F(SaveKnobs, GoRoundBesideTheSceneWithItsComments) {
                                 std::pair("static_coefficient: 1 ", "static_coefficient: 0.5 ")}) {
     expected.replace(expected.find(was), std::string(was).size(), is);
   }
-  EXPECT_EQ(scene::text_of(saved->file), expected) << "all but three numbers is as it was";
+  EXPECT_EQ(scene::text_of(saved->file), expected) << "only three numbers differ";
   view(saved->file);
   EXPECT_EQ(knob("ball: stiffness"), 321.5);
   EXPECT_EQ(knob("ball: friction coefficient"), 0.4);
   EXPECT_EQ(knob("ball: damping"), 2);
 }
 
-TEST_F(SaveKnobs, ReplaceNoFileUnlessThatIsAskedFor) {
+TEST_F(SaveKnobs, ReplacesAFileOnlyOnRequest) {
   const fs::path file = own("honey");
   SharedReader& reader = view(file);
   ASSERT_TRUE(turn_knob(reader, "honey: damping=3"));
@@ -95,30 +95,30 @@ TEST_F(SaveKnobs, ReplaceNoFileUnlessThatIsAskedFor) {
   EXPECT_EQ(save_knobs(reader)->file, folder_ / "honey-turned-2.yaml");
   const auto there = save_knobs(reader, {.file = folder_ / "honey-turned.yaml", .over = false});
   ASSERT_FALSE(there);
-  EXPECT_NE(there.error().message.find("is there already"), std::string::npos);
+  EXPECT_NE(there.error().message.find("already exists"), std::string::npos);
   const auto over = save_knobs(reader, {.file = {}, .over = true});
   ASSERT_TRUE(over) << over.error().message;
   EXPECT_EQ(over->file, file);
   EXPECT_NE(scene::text_of(file).find("damping: 3 "), std::string::npos);
 }
 
-TEST_F(SaveKnobs, NeverWriteOverASceneThatCameWithThimble) {
+TEST_F(SaveKnobs, NeverOverwritesAShippedScene) {
   const fs::path shipped = kSources / "app/scenes/clay.yaml";
   const std::string before = scene::text_of(shipped);
   SharedReader& reader = view(shipped);
   ASSERT_TRUE(turn_knob(reader, "ball: stiffness=500"));
   const auto over = save_knobs(reader, {.file = {}, .over = true});
   ASSERT_FALSE(over);
-  EXPECT_NE(over.error().message.find("came with Thimble"), std::string::npos);
+  EXPECT_NE(over.error().message.find("is shipped with Thimble"), std::string::npos);
   const auto saved = save_knobs(reader);
   ASSERT_TRUE(saved) << saved.error().message;
   EXPECT_EQ(saved->file, folder_ / "data/thimble/scenes/clay-turned.yaml");
   EXPECT_EQ(scene::text_of(shipped), before);
-  view(saved->file);  // with its mesh and its arm, which lie elsewhere
+  view(saved->file);  // with its mesh and its arm, which are in other folders
   EXPECT_EQ(knob("ball: stiffness"), 500);
 }
 
-TEST_F(SaveKnobs, SayWhichKnobsNoKeyOfTheFileHas) {
+TEST_F(SaveKnobs, ReportsKnobsWithoutAKey) {
   SharedReader& reader = view(own("sandpaper"));
   ASSERT_TRUE(turn_knob(reader, "ribs: texture gain=0.5"));
   const auto none = save_knobs(reader);
@@ -136,7 +136,7 @@ TEST_F(SaveKnobs, SayWhichKnobsNoKeyOfTheFileHas) {
   EXPECT_EQ(knob("ribs: stiffness"), 700);
 }
 
-TEST(EditScene, FindsTheEffectThatIsMeantAndLeavesTheRest) {
+TEST(EditScene, ChangesOnlyTheNamedEffect) {
   const std::string text =
       "objects:\n"
       "  - {name: ü, stiffness: 400, effects: [{texture: a, height: 1}, {texture: b, height: 2}]}\n"
@@ -155,7 +155,7 @@ TEST(EditScene, FindsTheEffectThatIsMeantAndLeavesTheRest) {
             "  - name: b   # height: 2\n"
             "    stiffness: \"400\"\n");
   EXPECT_EQ(edited->absent, (std::vector<std::size_t>{2, 3}))
-      << "what is quoted is not touched, and told";
+      << "quoted values are unchanged and reported";
   EXPECT_FALSE(scene::put_numbers("a: [", {}));
 }
 

@@ -1,4 +1,4 @@
-// Many runs of one scene side by side: each is, to the bit, what it is alone.
+// Many runs of one scene in a batch: each is bit-identical to a single run.
 #include "thimble/session/session_batch.h"
 
 #include <gtest/gtest.h>
@@ -47,8 +47,8 @@ class SessionBatchTest : public ::testing::Test {
   }
 };
 
-TEST_F(SessionBatchTest, EachRunIsToTheBitWhatItIsAlone) {
-  // A shape, a mesh with friction that flows, a body that moves.
+TEST_F(SessionBatchTest, EachRunIsBitIdenticalToASingleRun) {
+  // A shape, a mesh with friction, a body that moves.
   for (const char* scene : {"rubber", "clay", "floating_block"}) {
     constexpr std::size_t kRuns = 3;
     const auto batch = open(scene, kRuns, {.seed = 7, .keep = session::Keep::kNewest});
@@ -70,7 +70,7 @@ TEST_F(SessionBatchTest, EachRunIsToTheBitWhatItIsAlone) {
   }
 }
 
-TEST_F(SessionBatchTest, HandsAreLedEachToItsPoint) {
+TEST_F(SessionBatchTest, MovesEachHandToItsPoint) {
   constexpr std::size_t kRuns = 3;
   const auto batch = open("rubber", kRuns, {.seed = 1, .keep = session::Keep::kNewest});
   const std::array<Vector3d, kRuns> there{Vector3d(0, 0, 0.0), Vector3d(0.1, 0.1, 0.1),
@@ -104,14 +104,14 @@ TEST_F(SessionBatchTest, RestartedRunFollowsItsSeed) {
   EXPECT_EQ(hash_of(batch->newest()[1]), hash_of(second->ticks().back()));
 }
 
-TEST_F(SessionBatchTest, ARunThatIsOverStays) {
+TEST_F(SessionBatchTest, FinishedRunIsUnchanged) {
   const auto batch = open("rubber", 2, {.duration = 0.1, .keep = session::Keep::kNewest});
   batch->step(1000);
   EXPECT_EQ(batch->newest()[0].tick, 99U);
   EXPECT_EQ(batch->run(1).step(), driver::ServoEnd::kDone);
 }
 
-TEST_F(SessionBatchTest, AsksNothingOfTheHeapWhileItSteps) {
+TEST_F(SessionBatchTest, StepDoesNotAllocate) {
   const auto batch = open("clay", 3);
   const std::vector<std::uint32_t> ticks(3, 10);
   const std::vector<Vector3d> there(3, Vector3d(0, 0, -0.005));
@@ -124,7 +124,7 @@ TEST_F(SessionBatchTest, AsksNothingOfTheHeapWhileItSteps) {
   EXPECT_TRUE(batch->newest()[0].in_contact);
 }
 
-TEST_F(SessionBatchTest, KeepsWhatItIsToldTo) {
+TEST_F(SessionBatchTest, KeepsTheRequestedTicks) {
   const auto newest = open("rubber", 1), whole = open("rubber", 1, {});
   newest->step(500);
   whole->step(500);
@@ -136,7 +136,7 @@ TEST_F(SessionBatchTest, KeepsWhatItIsToldTo) {
   EXPECT_EQ(whole->run(0).statistics().ticks(), 500U);
 }
 
-TEST_F(SessionBatchTest, RefusesWhatOneRunAloneCanHave) {
+TEST_F(SessionBatchTest, RejectsOptionsOfSingleRuns) {
   EXPECT_FALSE(SessionBatch::open("rubber", 0));
   EXPECT_FALSE(SessionBatch::open("no_such_scene", 2));
   EXPECT_FALSE(SessionBatch::open("rubber", 2, {.clock = session::ClockKind::kWall}));

@@ -1,5 +1,5 @@
-// The order of a start with a real arm, whose wire is written here: all that takes time is done
-// before the arm is opened, and no force comes before its pose was looked at.
+// The start of a session with a real arm over a link of the test. All slow steps come before the
+// arm is opened, and no force is sent before its pose was checked.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -52,7 +52,7 @@ class SessionStart : public ::testing::Test {
     options_.terms->arm.path = file;
     options_.terms->arm.file = *scene::load_arm(file);
     options_.record = support::scratch_folder() / "start.h5";
-    options_.overwrite = true;  // of the test before
+    options_.overwrite = true;  // from the previous test
     options_.share = true;
     options_.open_link = [this](
                              const scene::ArmFile&,
@@ -78,7 +78,7 @@ class SessionStart : public ::testing::Test {
   bool ready_ = false;
 };
 
-TEST_F(SessionStart, OpensTheArmAfterAllThatTakesTimeAndLeavesItIdle) {
+TEST_F(SessionStart, OpensTheArmLastAndLeavesItIdle) {
   auto prepared = session::Session::prepare(scene(), options_);
   ASSERT_TRUE(prepared) << prepared.error().message;
   session_ = std::move(prepared).value();
@@ -87,14 +87,14 @@ TEST_F(SessionStart, OpensTheArmAfterAllThatTakesTimeAndLeavesItIdle) {
   EXPECT_EQ(opened_, 1);
   EXPECT_TRUE(ready_) << "something was not there yet when the arm was opened";
   EXPECT_EQ(session_->device().stage(), driver::DeviceStage::kIdle);
-  // Whoever runs it without letting forces through gets none.
+  // A run without `activate` sends no force.
   std::atomic<bool> stop{false};
   for (int tick = 0; tick < 20; ++tick) session_->step(stop);
   EXPECT_EQ(forced_, 0);
   EXPECT_EQ(session_->device().stage(), driver::DeviceStage::kIdle);
 }
 
-TEST_F(SessionStart, WithNobodyToAskRefusesAnArmThatIsNotAtHome) {
+TEST_F(SessionStart, NonInteractiveStartRequiresTheHomePose) {
   counts_ = {2000, 0, 0, 0, 0, 0};
   const auto refused = session::Session::open(scene(), options_);
   ASSERT_FALSE(refused);
@@ -111,7 +111,7 @@ TEST_F(SessionStart, WithNobodyToAskRefusesAnArmThatIsNotAtHome) {
   EXPECT_EQ(forced_, 0);
 }
 
-TEST_F(SessionStart, FindsTheObjectsThatARealTipStartsIn) {
+TEST_F(SessionStart, ReportsObjectsInWhichARealTipStarts) {
   const std::filesystem::path file = support::scratch_folder() / "around_the_arm.yaml";
   std::ofstream(file) << "name: around\narm: vintage_phantom\nduration: 1\nobjects:\n"
                          "  - {name: ball, sphere: {radius: 1}, stiffness: 500}\n"
@@ -140,7 +140,7 @@ TEST_F(SessionStart, AsksBeforeARealArmGetsForces) {
       .ask = [&](const std::string& line) { told.push_back(line); }};
   EXPECT_TRUE(session::agree_to_forces(**prepared, false, terminal, stop));
   ASSERT_EQ(told.size(), 2u);
-  EXPECT_NE(told[0].find("S1 is about to get forces."), std::string::npos) << told[0];
+  EXPECT_NE(told[0].find("S1 is about to apply forces."), std::string::npos) << told[0];
   EXPECT_NE(told[0].find("in the home pose"), std::string::npos) << told[0];
   EXPECT_EQ(looks, 3) << "it waits for the answer";
   answer = session::EnterKey::kClosed;
@@ -153,11 +153,11 @@ TEST_F(SessionStart, AsksBeforeARealArmGetsForces) {
   terminal.there = false;
   EXPECT_FALSE(session::agree_to_forces(**prepared, false, terminal, stop));
   EXPECT_NE(told.back().find("--yes"), std::string::npos);
-  EXPECT_EQ(looks, 0) << "nobody is asked";
+  EXPECT_EQ(looks, 0) << "no question is printed";
   EXPECT_EQ(opened_, 0);
 }
 
-TEST_F(SessionStart, LetsForcesThroughOnlyToAnArmWhoseTipIsAtHome) {
+TEST_F(SessionStart, EnablesForcesOnlyAtTheHomePose) {
   const session::Terminal nobody{
       .there = false, .key = [] { return session::EnterKey::kClosed; }, .tell = [](const auto&) {}};
   const std::atomic<bool> stop{false};

@@ -1,4 +1,4 @@
-// A session as a program of somebody else's uses it: by its public headers alone.
+// Sessions as used by other programs, through the public headers only.
 #include "thimble/session/session.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 
 using driver::TickRecord;
 
-/// Lets shipped scenes and arms be found from wherever the test runs.
+/// Makes the shipped scenes and arms available in any working folder.
 class SessionTest : public ::testing::Test {
  protected:
   void SetUp() override { std::filesystem::current_path(THIMBLE_SOURCE_DIR); }
@@ -38,7 +38,7 @@ class SessionTest : public ::testing::Test {
   }
 };
 
-/// Counts ticks and remembers the last.
+/// Counts ticks and stores the last one.
 class Counter final : public session::TickObserver {
  public:
   void take(const TickRecord& record) noexcept override {
@@ -49,7 +49,7 @@ class Counter final : public session::TickObserver {
   TickRecord last;
 };
 
-/// Half of the scene's force, and nothing besides.
+/// Half of the scene's force.
 struct HalfTheForce {
   render::SceneTouch& scene;
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
@@ -90,11 +90,11 @@ TEST_F(SessionTest, ReportsATipThatStartsInside) {
   ASSERT_NE(inside, nullptr);
   ASSERT_EQ(inside->told().size(), 1U);
   EXPECT_EQ(inside->told()[0],
-            "The tip starts inside ball: no surface is felt there until the tip has been outside.");
+            "The tip starts inside ball: its surface is felt only once the tip has been outside.");
   inside->run();
   const session::RunFigures figures = inside->figures();
   EXPECT_EQ(figures.inside_at_start, std::vector<std::string>{"ball"});
-  EXPECT_NE(summary(figures).find("Start     the tip was inside ball"), std::string::npos);
+  EXPECT_NE(summary(figures).find("Start     the tip started inside ball"), std::string::npos);
 }
 
 TEST_F(SessionTest, RecordsThatATipStartsInside) {
@@ -116,7 +116,7 @@ TEST_F(SessionTest, ReportsNoTipThatStartsOutside) {
   EXPECT_TRUE(outside->figures().inside_at_start.empty());
 }
 
-TEST_F(SessionTest, TellsAnObserverOfEveryTickAndChangesNoBitByThat) {
+TEST_F(SessionTest, ObserverGetsEveryTickAndChangesNothing) {
   const auto alone = open("box"), watched = open("box");
   Counter counter;
   ASSERT_TRUE(watched->add_observer(counter));
@@ -131,7 +131,7 @@ TEST_F(SessionTest, TellsAnObserverOfEveryTickAndChangesNoBitByThat) {
   EXPECT_FALSE(watched->add_observer(counter)) << "the run is over";
 }
 
-TEST_F(SessionTest, RunsTickByTickAsItRunsAtOnce) {
+TEST_F(SessionTest, SingleStepsEqualARun) {
   const auto whole = open("box"), stepped = open("box");
   whole->run();
   std::uint64_t steps = 0;
@@ -162,7 +162,7 @@ TEST_F(SessionTest, TakesACustomLawBeforeTheFirstTick) {
   EXPECT_FALSE(wall->set_law(driver::ForceLaw(late)));
 }
 
-TEST_F(SessionTest, LeadsTheHandFromOneTickToTheNext) {
+TEST_F(SessionTest, MovesTheHandFromTickToTick) {
   const auto session = open("box");
   const Eigen::Vector3d aside(0.02, 0.03, 0.05);
   ASSERT_TRUE(session->lead_hand(aside));
@@ -173,7 +173,7 @@ TEST_F(SessionTest, LeadsTheHandFromOneTickToTheNext) {
   EXPECT_LT((Eigen::Map<const Eigen::Vector3d>(end.p_WT.data()) - aside).norm(), 2e-3);
 }
 
-TEST_F(SessionTest, SumsItsFiguresUp) {
+TEST_F(SessionTest, SummarisesItsFigures) {
   const auto session = open("box");
   session->run();
   const session::RunFigures figures = session->figures();
@@ -193,7 +193,7 @@ TEST_F(SessionTest, SumsItsFiguresUp) {
   EXPECT_EQ(stopped->figures().end, driver::ServoEnd::kStopped);
 }
 
-TEST_F(SessionTest, ShowsDentsWhereThereAreSomeAndMeshesByName) {
+TEST_F(SessionTest, ReturnsDentsAndMeshesByName) {
   session::SessionOptions options;
   options.duration = 3;
   const auto balloon = open("water_balloon", options);
@@ -212,7 +212,7 @@ TEST_F(SessionTest, ShowsDentsWhereThereAreSomeAndMeshesByName) {
   EXPECT_FALSE(box->find_object("no such object"));
 }
 
-TEST_F(SessionTest, RecordsReadsAndReplaysToTheBit) {
+TEST_F(SessionTest, RecordingReplaysBitIdentically) {
   const auto file = support::scratch_folder() / "session.h5";
   const auto session = open("rubber");
   for (int i = 0; i < 100; ++i) session->step();
@@ -259,7 +259,7 @@ struct PreparedLaw {
   void prepare(const driver::DeviceState&) const noexcept { ++prepared; }
 };
 
-TEST_F(SessionTest, LetsItsLawPrepareTicksInRealTimeAlone) {
+TEST_F(SessionTest, LawPreparesTicksOnlyInRealTime) {
   PreparedLaw law;
   session::SessionOptions options;
   options.duration = 0.2;
@@ -271,12 +271,12 @@ TEST_F(SessionTest, LetsItsLawPrepareTicksInRealTimeAlone) {
   run();
   EXPECT_EQ(law.prepared, 0u);
   options.clock = session::ClockKind::kWall;
-  // On a machine that is busy every tick of a run may be late, which leaves no time to prepare.
+  // On a busy machine every tick of a run may be late, so that no time remains to prepare.
   for (int tries = 0; law.prepared == 0 && tries < 100; ++tries) run();
   EXPECT_GT(law.prepared, 0u);
 }
 
-TEST_F(SessionTest, RunsInRealTimeOnAThreadOfItsOwn) {
+TEST_F(SessionTest, RunsInRealTimeOnASeparateThread) {
   session::SessionOptions options;
   options.clock = session::ClockKind::kWall;
   options.duration = 0.2;

@@ -1,5 +1,4 @@
-// How prints in clay come to a page: the pictures lead from the first mesh to the one that was
-// left.
+// Prints in clay on a page: the pictures lead from the initial to the final mesh.
 #include "report/html/shape_trace.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +14,7 @@
 namespace thimble::report {
 namespace {
 
-// What a page makes of a step.
+// Applies a step as a page does.
 void apply(const ShapeStep& step, render::TriangleMesh& mesh) {
   for (std::size_t i = 0; i < step.vertices.size(); ++i) {
     const std::size_t v = step.vertices[i];
@@ -31,7 +30,7 @@ void apply(const ShapeStep& step, render::TriangleMesh& mesh) {
   }
 }
 
-// Holds the pictures of a trace against the mesh that a tablet was left with.
+// Compares the pictures of a trace with the final mesh of a tablet.
 void expect_left(ShapeTrace& trace, const render::TriangleMesh& first,
                  const render::TriangleMesh& left) {
   const auto steps = trace.steps({first}, 0);
@@ -52,7 +51,7 @@ void expect_left(ShapeTrace& trace, const render::TriangleMesh& first,
   }
 }
 
-TEST(ShapeTrace, LeadsFromTheFirstMeshOfATabletToTheOneThatWasLeft) {
+TEST(ShapeTrace, LeadsFromTheInitialToTheFinalMesh) {
   const auto session = support::open_shipped("clay_tablet");
   ASSERT_NE(session, nullptr);
   const scene::SceneObjects& objects = session->setup().objects();
@@ -65,9 +64,9 @@ TEST(ShapeTrace, LeadsFromTheFirstMeshOfATabletToTheOneThatWasLeft) {
   expect_left(trace, first, objects.mesh_now(0));
 }
 
-TEST(ShapeTrace, FindsRoomForALongRunWithoutTheHeap) {
+TEST(ShapeTrace, LongRunFitsWithoutAllocation) {
   session::SessionOptions options;
-  options.duration = 2;  // in the midst of a stroke
+  options.duration = 2;  // during a stroke
   const auto session = support::open_shipped("clay_tablet", options);
   ASSERT_NE(session, nullptr);
   const scene::SceneObjects& objects = session->setup().objects();
@@ -77,7 +76,7 @@ TEST(ShapeTrace, FindsRoomForALongRunWithoutTheHeap) {
   ASSERT_TRUE(session->add_observer(trace));
   ASSERT_EQ(session->run(), driver::ServoEnd::kDone);
   ASSERT_FALSE(shape->moves().empty());
-  // The last tick again and again, until there was no room three times.
+  // Repeats the last tick until memory was full three times.
   EXPECT_EQ(support::heap_calls_of([&] {
               driver::TickRecord tick;
               for (std::int64_t i = 1; i < 30'000; ++i) {

@@ -35,7 +35,7 @@ namespace {
 
 using driver::TickRecord;
 
-/// Makes a scene of a triangle, a shaped one with two sides whose edges may be split, and a knob.
+/// Makes a scene with a triangle, a two-sided shaped one whose edges may be split, and a knob.
 session::SharedScene small_scene() {
   session::SharedScene scene;
   scene.name = "small";
@@ -64,12 +64,12 @@ session::SharedScene small_scene() {
   return scene;
 }
 
-/// Gives a name that no other test has at the moment.
+/// Returns a name that no other test uses meanwhile.
 std::string name_for(const char* test) {
   return std::string(test) + "-" + std::to_string(getpid());
 }
 
-/// Gives an object's mesh as it was described.
+/// Returns an object's mesh as described.
 render::TriangleMesh mesh_of(const session::SharedScene& scene, std::size_t number) {
   const auto& object = scene.objects[number];
   render::TriangleMesh mesh;
@@ -86,7 +86,7 @@ render::TriangleMesh mesh_of(const session::SharedScene& scene, std::size_t numb
   return mesh;
 }
 
-/// Makes a tick all of whose numbers follow from one, so that a torn one shows.
+/// Makes a tick in which all values follow from one number, so that a torn read is detected.
 TickRecord tick_number(std::uint64_t number) {
   TickRecord tick;
   tick.tick = number;
@@ -115,7 +115,7 @@ struct Pair {
   std::unique_ptr<session::SharedReader> reader;
 };
 
-/// Joins a run and a reader over memory without a name.
+/// Connects a run and a reader through memory without a name.
 Pair joined(const session::SharedScene& scene, std::size_t ring_ticks = 100) {
   Pair pair;
   pair.run = session::SharedRun::create("", scene, ring_ticks).value();
@@ -170,7 +170,7 @@ TEST(Share, ShowsTheNewestTickAndThoseBefore) {
   ASSERT_EQ(ticks.size(), 4U);
   for (std::uint64_t i = 0; i < 4; ++i) EXPECT_EQ(ticks[i].tick, i);
 
-  // A reader that sleeps while the ring goes round is told how many it has missed.
+  // A reader that sleeps while the ring wraps around gets the number of missed ticks.
   ticks.clear();
   for (std::uint64_t i = 4; i < 29; ++i) pair.run->store_tick(tick_number(i));
   EXPECT_EQ(pair.reader->ticks_since(serial, ticks), 15U);
@@ -190,7 +190,7 @@ TEST(Share, CountsPeriodsThatTheLoopMissed) {
   EXPECT_EQ(pair.reader->counters().ticks, 3U);
 }
 
-TEST(Share, CountsATickOfAPauseApartAndMissesNoneThen) {
+TEST(Share, CountsPausedTicksSeparately) {
   for (const bool wall : {true, false}) {
     session::SharedScene scene = small_scene();
     scene.wall_clock = wall;
@@ -204,13 +204,13 @@ TEST(Share, CountsATickOfAPauseApartAndMissesNoneThen) {
     pair.run->store_tick(tick_number(6));
     const auto counters = pair.reader->counters();
     EXPECT_EQ(counters.ticks, 4U);
-    // Simulated time stands in a pause: what ticks then was let go on, tick by tick.
+    // Simulated time stops in a pause, so ticks in a pause are single steps.
     EXPECT_EQ(counters.paused, wall ? 2U : 0U);
     EXPECT_EQ(counters.missed, wall ? 0U : 3U);
   }
 }
 
-TEST(Share, AsksForAPaceAndIgnoresNonsense) {
+TEST(Share, RequestsASpeedAndIgnoresInvalidOnes) {
   session::SharedScene scene = small_scene();
   const auto refused = [](const driver::Result<void>& asked) {
     return asked ? std::string() : asked.error().message;
@@ -218,11 +218,11 @@ TEST(Share, AsksForAPaceAndIgnoresNonsense) {
   {
     const Pair pair = joined(scene);
     EXPECT_NE(refused(pair.reader->ask_speed(2)).find("--clock paced"), std::string::npos);
-    EXPECT_NE(refused(pair.reader->ask_restart()).find("cannot be begun anew"), std::string::npos);
+    EXPECT_NE(refused(pair.reader->ask_restart()).find("cannot be restarted"), std::string::npos);
   }
   scene.paced = scene.restarts = true;
   const Pair pair = joined(scene);
-  EXPECT_FALSE(pair.run->speed_wanted()) << "nobody has asked";
+  EXPECT_FALSE(pair.run->speed_wanted()) << "there is no request";
   EXPECT_EQ(pair.reader->speed_asked(), 1);
   ASSERT_TRUE(pair.reader->ask_speed(0.25));
   EXPECT_EQ(pair.run->speed_wanted(), 0.25);
@@ -247,14 +247,14 @@ TEST(Share, AsksForAPaceAndIgnoresNonsense) {
   EXPECT_EQ(pair.reader->notice(), "line 3: ? wrong\nmore");
 }
 
-TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
+TEST(Share, ReadsAreNeverTorn) {
   const Pair pair = joined(small_scene(), 64);
   std::atomic<bool> stop{false};
   std::atomic<std::uint64_t> reads{0}, torn{0};
   std::vector<std::thread> readers;
   for (int i = 0; i < 3; ++i) {
     readers.emplace_back([&] {
-      // Over the same mapping, so that the thread sanitizer sees both sides.
+      // Both sides use the same mapping, so that the thread sanitizer can check them.
       const auto reader = session::SharedReader::over(pair.run->memory().bytes()).value();
       std::uint64_t serial = 0;
       std::vector<TickRecord> ticks;
@@ -303,7 +303,7 @@ TEST(Share, TearsNoReadWhileTheWriterRunsAtFullSpeed) {
   EXPECT_GE(reads.load(), 1000U) << "nothing was put to the test";
 }
 
-TEST(Share, StoresWithoutTheHeap) {
+TEST(Share, StoresWithoutAllocation) {
   const Pair pair = joined(small_scene());
   render::BodyPatch patch{};
   session::SharedHand hand;
@@ -321,7 +321,7 @@ TEST(Share, StoresWithoutTheHeap) {
   EXPECT_EQ(calls, 0);
 }
 
-TEST(Share, ShowsWhereShapedVerticesHaveGoneForGood) {
+TEST(Share, ShowsPermanentlyMovedVertices) {
   const Pair pair = joined(small_scene());
   const render::TriangleMesh first = mesh_of(pair.reader->scene(), 1);
   render::TriangleMesh mesh = first;
@@ -336,7 +336,7 @@ TEST(Share, ShowsWhereShapedVerticesHaveGoneForGood) {
   EXPECT_EQ(mesh.triangles, first.triangles);
 }
 
-TEST(Share, ShowsTrianglesThatWereSplitForGood) {
+TEST(Share, ShowsPermanentlySplitTriangles) {
   const Pair pair = joined(small_scene());
   render::TriangleMesh mesh = mesh_of(pair.reader->scene(), 1);
   const render::TriangleMesh first = mesh;
@@ -351,7 +351,7 @@ TEST(Share, ShowsTrianglesThatWereSplitForGood) {
   EXPECT_EQ(mesh.triangles, once);
   ASSERT_EQ(mesh.vertices.size(), 4U);
   EXPECT_EQ(mesh.vertices[3], Eigen::Vector3d(1, 2, 3));
-  // From where it was, and from the first shape anew.
+  // From the previous shape, and again from the initial one.
   pair.run->store_vertex(4, {4, 5, 6});
   pair.run->store_split(1, {.vertex = 4, .ends = {2, 3}, .triangles = {0, 2}, .others = {4, 5}});
   pair.run->store_split(2, {});  // there is none
@@ -366,7 +366,7 @@ TEST(Share, ShowsTrianglesThatWereSplitForGood) {
   EXPECT_EQ(pair.reader->rejected(), 0U);
 }
 
-TEST(Share, SplitsNoEdgeThatIsNotThere) {
+TEST(Share, RejectsASplitOfAMissingEdge) {
   for (const render::EdgeSplit& wrong : {render::EdgeSplit{.ends = {0, 9}, .triangles = {0, 1}},
                                          render::EdgeSplit{.ends = {-1, 0}, .triangles = {0, 1}},
                                          render::EdgeSplit{.ends = {1, 1}, .triangles = {0, 1}},
@@ -384,7 +384,7 @@ TEST(Share, SplitsNoEdgeThatIsNotThere) {
   }
 }
 
-TEST(Share, TurnsKnobsWithinTheirBoundsAlone) {
+TEST(Share, ChangesKnobsOnlyWithinTheirBounds) {
   const Pair pair = joined(small_scene());
   EXPECT_EQ(pair.reader->knob(0), 800);
   EXPECT_EQ(pair.run->knob_wanted(0), 800);
@@ -398,7 +398,7 @@ TEST(Share, TurnsKnobsWithinTheirBoundsAlone) {
   EXPECT_EQ(pair.reader->knob(0), 400);
 }
 
-TEST(Share, CarriesWhatViewersAskFor) {
+TEST(Share, PassesRequestsOfViewers) {
   const Pair pair = joined(small_scene());
   EXPECT_FALSE(pair.run->pause_asked());
   pair.reader->ask_pause(true);
@@ -420,7 +420,7 @@ TEST(Share, CarriesWhatViewersAskFor) {
   EXPECT_FALSE(pair.run->record_order_after(order->number));
 
   session::SharedHand hand;
-  EXPECT_FALSE(pair.run->hand(hand)) << "nobody has led it";
+  EXPECT_FALSE(pair.run->hand(hand)) << "no viewer has moved it";
   ASSERT_TRUE(pair.reader->lead_hand({0.01, 0.02, 0.03}, true));
   ASSERT_TRUE(pair.run->hand(hand));
   EXPECT_EQ(hand.p_WH[1], 0.02);
@@ -428,7 +428,7 @@ TEST(Share, CarriesWhatViewersAskFor) {
   EXPECT_FALSE(pair.reader->lead_hand({std::numeric_limits<double>::infinity(), 0, 0}, true));
 }
 
-/// Lets a child process do something with a run's memory and die by SIGKILL.
+/// Runs `work` on a run's memory in a child process, which then dies by SIGKILL.
 template <class Work>
 void in_a_viewer_that_is_killed(Work work) {
   const pid_t viewer = fork();
@@ -441,24 +441,24 @@ void in_a_viewer_that_is_killed(Work work) {
   ASSERT_TRUE(WIFSIGNALED(status));
 }
 
-/// Lets a viewer of its own do something with a run in a child process, and die by SIGKILL.
+/// Runs `work` with a separate viewer in a child process, which then dies by SIGKILL.
 template <class Work>
 void viewer_that_is_killed(const Pair& pair, Work work) {
   in_a_viewer_that_is_killed([&] {
     const auto own = session::SharedReader::over(pair.run->memory().again().value()).value();
     work(*own);
-    raise(SIGKILL);  // with its place
+    raise(SIGKILL);  // including its place
   });
 }
 
-/// Gives what viewers ask of a run, as it lies in the memory.
+/// Returns the requests of viewers in the memory of a run.
 session::SharedRequests& requests_of(const Pair& pair) {
   return reinterpret_cast<session::SharedLive*>(pair.run->memory().bytes().data() +
                                                 session::kSharedLiveOffset)
       ->requests;
 }
 
-/// Leaves a snapshot as a writer does that is killed in the middle: its first word is odd.
+/// Leaves a snapshot as a writer that is killed while writing: its first word is odd.
 template <class T>
 void tear(driver::Snapshot<T>& snapshot) {
   auto& sequence = *reinterpret_cast<std::atomic<std::uint64_t>*>(&snapshot);
@@ -470,7 +470,7 @@ bool is_torn(const driver::Snapshot<T>& snapshot) {
   return reinterpret_cast<const std::atomic<std::uint64_t>*>(&snapshot)->load() % 2 != 0;
 }
 
-TEST(Share, SaysThatAKeyMustBeHeld) {
+TEST(Share, ReportsThatAKeyMustBeHeld) {
   session::SharedScene scene = small_scene();
   EXPECT_FALSE(joined(scene).reader->scene().hold_by_key);
   scene.hold_by_key = true;
@@ -494,7 +494,7 @@ TEST(Share, KeyOfAViewerThatDiesIsReleased) {
   EXPECT_LE(key.until_ns(), session::HeldKey::kLasts_ns);
 }
 
-TEST(Share, LetsTheHandGoWhenTheViewerThatHoldsItDies) {
+TEST(Share, HandOfDeadViewerIsReleased) {
   const Pair pair = joined(small_scene());
   viewer_that_is_killed(pair, [](auto& viewer) { viewer.lead_hand({0, 0, 0}, true); });
   session::SharedHand hand;
@@ -520,7 +520,7 @@ TEST(Share, HalfWrittenHandIsReleasedWhereItWas) {
   pair.run->watch_viewers();
   tear(requests_of(pair).hand);
   session::SharedHand hand;
-  ASSERT_FALSE(pair.run->hand(hand)) << "half of it must not be taken";
+  ASSERT_FALSE(pair.run->hand(hand)) << "a partly written target must be ignored";
   pair.run->watch_viewers();
   ASSERT_TRUE(pair.run->hand(hand));
   EXPECT_EQ(hand.active, 0U);
@@ -537,7 +537,7 @@ TEST(Share, HandThatIsBeingWrittenIsLeftAlone) {
   EXPECT_TRUE(is_torn(requests_of(pair).hand));
 }
 
-TEST(Share, HearsTheNextViewerAfterOneWasKilledInItsTurn) {
+TEST(Share, AcceptsRequestsAfterAViewerWasKilled) {
   const Pair pair = joined(small_scene());
   in_a_viewer_that_is_killed([&] {
     const auto own = pair.run->memory().again().value();
@@ -552,7 +552,7 @@ TEST(Share, HearsTheNextViewerAfterOneWasKilledInItsTurn) {
   EXPECT_EQ(hand.p_WH[0], 2);
 }
 
-TEST(Share, RestartIsHeardAfterHalfWrittenOne) {
+TEST(Share, RestartWorksAfterHalfWrittenOne) {
   session::SharedScene scene = small_scene();
   scene.paced = scene.restarts = true;
   const Pair pair = joined(scene);
@@ -612,8 +612,8 @@ TEST(Share, ForgetsViewersThatDied) {
   EXPECT_EQ(pair.run->viewers().size(), 1U) << "the reader of this test";
 }
 
-/// A file in the folder of shared memory that is none, for as long as this lives; what hangs on it
-/// is ended by SIGALRM.
+/// A file in the folder of shared memory that is not shared memory; removed by the destructor. A
+/// process that hangs on it is ended by SIGALRM.
 class WrongFile {
  public:
   explicit WrongFile(std::string path) : path_(std::move(path)) {
@@ -700,8 +700,8 @@ TEST(Share, FileOfAnotherUserDoesNotStopRun) {
   unlink(path.c_str());
 }
 
-/// Runs `work` in a PID namespace of its own with the same /dev/shm, as a container has it that
-/// shares the host's IPC. Returns its exit code; none where the kernel forbids such a namespace.
+/// Runs `work` in a separate PID namespace with the same /dev/shm, as in a container that shares
+/// the host's IPC. Returns its exit code; empty if the kernel forbids such a namespace.
 template <class Work>
 std::optional<int> in_another_pid_namespace(Work work) {
   constexpr int kForbidden = 99;
@@ -770,7 +770,7 @@ TEST(Share, LiveViewerIsKeptByRunInOtherPidNamespace) {
   EXPECT_TRUE(paused);
 }
 
-TEST(Share, IsForThisUserAloneAndGoneAfterwards) {
+TEST(Share, IsPrivateAndRemovedAfterwards) {
   const std::string name = name_for("private");
   const std::string path = "/dev/shm/thimble-" + std::to_string(geteuid()) + "-" + name;
   {
@@ -781,7 +781,7 @@ TEST(Share, IsForThisUserAloneAndGoneAfterwards) {
     EXPECT_EQ(session::SharedReader::attach(name).value()->name(), name);
     const auto second = session::SharedRun::create(name, small_scene(), 10);
     ASSERT_FALSE(second);
-    EXPECT_NE(second.error().message.find("already shown"), std::string::npos);
+    EXPECT_NE(second.error().message.find("already shared"), std::string::npos);
     bool listed = false;
     for (const session::RunningRun& one : session::running_runs()) listed |= one.name == name;
     EXPECT_TRUE(listed);
@@ -793,13 +793,13 @@ TEST(Share, IsForThisUserAloneAndGoneAfterwards) {
   EXPECT_NE(gone.error().message.find("--list"), std::string::npos) << gone.error().message;
 }
 
-TEST(Share, NamePassesToTheNextRunWithoutAGap) {
+TEST(Share, NamePassesToTheNextRunAtomically) {
   const std::string name = name_for("next");
   auto run = session::SharedRun::create(name, small_scene(), 10).value();
   session::SharedScene other = small_scene();
   other.name = "other";
   {
-    // Complete, but not yet in its place: nobody sees it, and who looks finds the run before.
+    // Complete, but without its name yet: it is invisible, and viewers find the previous run.
     const auto memory = session::SharedMemory::create_next(run->memory(), 1 << 20).value();
     int listed = 0;
     for (const session::RunningRun& one : session::running_runs()) {
@@ -817,29 +817,29 @@ TEST(Share, NamePassesToTheNextRunWithoutAGap) {
   EXPECT_FALSE(session::SharedReader::attach(name));
 }
 
-TEST(Share, TellsThatNobodyHearsWhatIsAskedOfARunThatIsOver) {
+TEST(Share, RequestsToAFinishedRunAreRejected) {
   session::SharedScene scene = small_scene();
   scene.paced = scene.restarts = true;
   const Pair pair = joined(scene);
   ASSERT_TRUE(pair.reader->ask_restart("/kept.yaml"));
   EXPECT_TRUE(pair.reader->heard());
   pair.run->close();
-  EXPECT_EQ(pair.run->restart_order_after(0)->scene, "/kept.yaml") << "asked before";
+  EXPECT_EQ(pair.run->restart_order_after(0)->scene, "/kept.yaml") << "requested before";
   for (const auto& answer : {pair.reader->heard(), pair.reader->ask_restart("/lost.yaml"),
                              pair.reader->ask_loop(true), pair.reader->ask_speed(2)}) {
     ASSERT_FALSE(answer);
-    EXPECT_NE(answer.error().message.find("ask again"), std::string::npos);
+    EXPECT_NE(answer.error().message.find("try again"), std::string::npos);
   }
   EXPECT_EQ(pair.run->restart_order_after(0)->scene, "/kept.yaml");
 }
 
-TEST(Share, TellsThatARunWasKilledAndClearsItAway) {
+TEST(Share, ReportsAndRemovesAKilledRun) {
   const std::string name = name_for("killed");
   std::array<int, 2> pipe_ends{};
   ASSERT_EQ(pipe(pipe_ends.data()), 0);
   const pid_t child = fork();
   if (child == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that fails leaves nobody behind
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a failing test leaves no process behind
     const auto run = session::SharedRun::create(name, small_scene(), 10).value();
     run->set_state(session::RunState::kRunning);
     static_cast<void>(write(pipe_ends[1], "x", 1));
@@ -861,7 +861,7 @@ TEST(Share, TellsThatARunWasKilledAndClearsItAway) {
   EXPECT_TRUE(session::SharedRun::create(name, small_scene(), 10));
 }
 
-/// Gives a copy of a run's memory, aligned as the real one.
+/// Returns a copy of a run's memory, aligned as the original.
 struct Copy {
   explicit Copy(std::span<const std::byte> from)
       : words(from.size() / 8 + 8), bytes(aligned(), from.size()) {
@@ -875,7 +875,7 @@ struct Copy {
   std::span<std::byte> bytes;
 };
 
-/// Asks a reader everything there is to ask.
+/// Calls all functions of a reader.
 void read_all(session::SharedReader& reader) {
   TickRecord tick;
   static_cast<void>(reader.newest(tick));
@@ -905,10 +905,10 @@ void read_all(session::SharedReader& reader) {
   static_cast<void>(session::arm_lines(reader.scene().arms.front(), tick));
 }
 
-TEST(Share, RefusesAnotherLayoutBeforeAnythingElse) {
+TEST(Share, RejectsAnotherLayoutFirst) {
   const Pair pair = joined(small_scene());
   Copy copy(pair.run->memory().bytes());
-  // Nothing but the two words that stay where they are makes sense.
+  // Only the two words with fixed offsets are valid.
   std::memset(copy.bytes.data() + sizeof(std::uint64_t), 0x41, copy.bytes.size() - 8);
   const auto reader = session::SharedReader::over(copy.bytes);
   ASSERT_FALSE(reader);
@@ -916,7 +916,7 @@ TEST(Share, RefusesAnotherLayoutBeforeAnythingElse) {
       << reader.error().message;
 }
 
-TEST(Share, RefusesEveryFlippedByteOfWhatDoesNotChange) {
+TEST(Share, RejectsEveryFlippedByteOfConstantData) {
   const Pair pair = joined(small_scene());
   Copy copy(pair.run->memory().bytes());
   const auto& head = *reinterpret_cast<const session::SharedHead*>(copy.bytes.data());
@@ -928,7 +928,7 @@ TEST(Share, RefusesEveryFlippedByteOfWhatDoesNotChange) {
   for (std::size_t at = 0; at < sizeof(session::SharedHead); ++at) refused(at);
   for (std::size_t at = head.objects.offset;
        at < head.triangles.offset + head.triangles.count * sizeof(session::SharedTriangle); ++at) {
-    // Between two tables there are bytes that nobody reads.
+    // The bytes between two tables are not read.
     for (const auto& [table, size] : {std::pair(head.objects, sizeof(session::SharedObject)),
                                       std::pair(head.knobs, sizeof(session::SharedKnob)),
                                       std::pair(head.vertices, sizeof(session::SharedVertex)),
@@ -936,10 +936,10 @@ TEST(Share, RefusesEveryFlippedByteOfWhatDoesNotChange) {
       if (at >= table.offset && at < table.offset + table.count * size) refused(at);
     }
   }
-  EXPECT_TRUE(session::SharedReader::over(copy.bytes)) << "as it was";
+  EXPECT_TRUE(session::SharedReader::over(copy.bytes)) << "unchanged";
 }
 
-TEST(Share, ReadsAnyNonsenseInWhatChangesWithoutHarm) {
+TEST(Share, ReadsInvalidLiveDataSafely) {
   const Pair pair = joined(small_scene());
   for (std::uint64_t i = 0; i < 150; ++i) pair.run->store_tick(tick_number(i));
   pair.run->store_patch({});
@@ -964,7 +964,7 @@ TEST(Share, ReadsAnyNonsenseInWhatChangesWithoutHarm) {
   EXPECT_GT(reader->rejected(), 0U) << "nothing was put to the test";
 }
 
-TEST(Share, RefusesMemoryThatWasCutShort) {
+TEST(Share, RejectsTruncatedMemory) {
   const Pair pair = joined(small_scene());
   for (std::size_t bytes = 0; bytes < pair.run->memory().bytes().size(); bytes += 613) {
     Copy copy(pair.run->memory().bytes().first(bytes));
@@ -972,7 +972,7 @@ TEST(Share, RefusesMemoryThatWasCutShort) {
   }
 }
 
-TEST(Share, OutlivesMemoryThatIsCutShortUnderIt) {
+TEST(Share, SurvivesTruncationOfMappedMemory) {
   const std::string name = name_for("cut");
   const auto run = session::SharedRun::create(name, small_scene(), 100).value();
   for (std::uint64_t i = 0; i < 150; ++i) run->store_tick(tick_number(i));
@@ -984,12 +984,12 @@ TEST(Share, OutlivesMemoryThatIsCutShortUnderIt) {
   read_all(*reader);
   EXPECT_TRUE(reader->died());
   EXPECT_EQ(reader->state(), session::RunState::kEnded);
-  run->store_tick(tick_number(150));  // nor does the servo die of it
+  run->store_tick(tick_number(150));  // the servo survives it too
   EXPECT_TRUE(run->memory().broken());
-  EXPECT_FALSE(session::SharedReader::attach(name)) << "nobody else attaches to it";
+  EXPECT_FALSE(session::SharedReader::attach(name)) << "no other viewer can attach";
 }
 
-TEST(KnobOrder, TurnsTheKnobItNamesAndTellsWhichThereAre) {
+TEST(KnobOrder, ChangesTheNamedKnobAndListsKnobs) {
   const Pair pair = joined(small_scene());
   ASSERT_TRUE(session::turn_knob(*pair.reader, "stiff: stiffness=300.5"));
   EXPECT_EQ(pair.run->knob_wanted(0), 300.5);

@@ -53,13 +53,13 @@ TEST(StartPose, OfEveryShippedArmIsAtItsHomePose) {
   EXPECT_FALSE(session::StartPose::of(file_of("falcon"), ArmKind::kFalcon).has_home());
 }
 
-TEST(StartPose, TellsHowFarTheTipIsFromHomeAndFromTheWorkspace) {
+TEST(StartPose, ReportsDistancesFromHomeAndWorkspace) {
   const session::StartPose place({.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}},
                                  Eigen::Vector3d(0.05, 0, 0));
   EXPECT_EQ(place.trouble({0.05, 0.0199, 0}, true), "");
   const std::string far_off = place.trouble({0.05, 0.03, 0.04}, true);
   EXPECT_TRUE(has(far_off, "50 mm away from its home pose")) << far_off;
-  EXPECT_TRUE(has(far_off, "counters began elsewhere")) << far_off;
+  EXPECT_TRUE(has(far_off, "counters are wrong")) << far_off;
   EXPECT_EQ(place.trouble({0.05, 0.03, 0.04}, false), "");
   EXPECT_EQ(place.trouble({-0.119, 0, 0}, false), "");
   const std::string outside = place.trouble({-0.13, 0, 0.14}, false);
@@ -71,7 +71,7 @@ TEST(StartPose, TellsHowFarTheTipIsFromHomeAndFromTheWorkspace) {
   EXPECT_NE(homeless.trouble({0.2, 0, 0}, true), "");
 }
 
-TEST(StartPose, NeverLetsThroughWhatIsNoNumber) {
+TEST(StartPose, RejectsPositionsThatAreNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const session::StartPose place({.min_W = {-1, -1, -1}, .max_W = {1, 1, 1}},
                                  Eigen::Vector3d(0, 0, 0));
@@ -82,10 +82,10 @@ TEST(StartPose, NeverLetsThroughWhatIsNoNumber) {
   }
 }
 
-/// An arm that reports what the test says, and a user who does what the test says.
+/// Arm and user that follow the script of the test.
 class WaitForStartPose : public ::testing::Test {
  protected:
-  /// An arm that answers every look.
+  /// Link of an arm that reports in every tick.
   class Answering final : public driver::Transport {
    public:
     explicit Answering(WaitForStartPose& test) : test_(test) {}
@@ -139,7 +139,7 @@ class WaitForStartPose : public ::testing::Test {
                               .tell = [this](const std::string& line) { told_.push_back(line); }};
 };
 
-TEST_F(WaitForStartPose, GoesOnAtOnceIfTheTipIsThere) {
+TEST_F(WaitForStartPose, ReturnsAtOnceIfTheTipIsThere) {
   open();
   const int before = messages_;
   EXPECT_TRUE(*wait());
@@ -156,12 +156,13 @@ TEST_F(WaitForStartPose, SendsZeroForceWhileWaiting) {
   };
   EXPECT_TRUE(*wait());
   EXPECT_EQ(looks_, 70);
-  ASSERT_EQ(told_.size(), 2u);  // at first, and after the Enter that came too early
+  ASSERT_EQ(told_.size(), 2u);  // at the start, and after the Enter that came too early
   EXPECT_TRUE(has(told_[0], "mm away from its home pose")) << told_[0];
   EXPECT_EQ(zeros_, messages_);
-  EXPECT_EQ(messages_, 1 + 70 * 20);  // one per millisecond, so that no watchdog and no pause comes
+  EXPECT_EQ(messages_,
+            1 + 70 * 20);  // one per millisecond, so that no watchdog expires and no pause occurs
   EXPECT_EQ(device_->stage(), driver::DeviceStage::kIdle);
-  // The run that follows begins with its first tick.
+  // The run that follows starts with its first tick.
   ASSERT_TRUE(device_->activate());
   EXPECT_EQ(device_->read(clock_.now_ns(), clock_.now_ns()).tick, 0u);
 }
@@ -170,9 +171,10 @@ TEST_F(WaitForStartPose, RestartMeanwhileNeedsHomePoseEvenIfHomed) {
   counts_ = {12000, 0, 0, 0, 0, 0};  // outside of the workspace
   open();
   user_ = [this](int look) {
-    silent_ = look >= 10 && look < 13;                // 60 ms
-    if (look == 12) counts_ = {2000, 0, 0, 0, 0, 0};  // it counts from elsewhere, inside
-    if (look == 40) counts_ = {50, 0, 0, 0, 0, 0};    // at home
+    silent_ = look >= 10 && look < 13;  // 60 ms
+    if (look == 12)
+      counts_ = {2000, 0, 0, 0, 0, 0};  // its counters are wrong; the reported tip is inside
+    if (look == 40) counts_ = {50, 0, 0, 0, 0, 0};  // at home
     return look == 30 || look == 50 ? session::EnterKey::kPressed : session::EnterKey::kNothing;
   };
   EXPECT_TRUE(*wait(false));
@@ -183,7 +185,7 @@ TEST_F(WaitForStartPose, RestartMeanwhileNeedsHomePoseEvenIfHomed) {
   EXPECT_TRUE(device_->activate());
 }
 
-TEST_F(WaitForStartPose, GivesUpWhereNobodyCanBeAsked) {
+TEST_F(WaitForStartPose, FailsWithoutATerminal) {
   counts_ = {2000, 0, 0, 0, 0, 0};
   open();
   terminal_.there = false;
@@ -196,7 +198,7 @@ TEST_F(WaitForStartPose, GivesUpWhereNobodyCanBeAsked) {
   EXPECT_FALSE(wait());
 }
 
-TEST_F(WaitForStartPose, EndsWhenItIsToldToAndWhenTheArmGoes) {
+TEST_F(WaitForStartPose, EndsOnStopAndWhenTheArmIsLost) {
   counts_ = {2000, 0, 0, 0, 0, 0};
   open();
   user_ = [this](int look) {

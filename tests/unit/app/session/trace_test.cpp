@@ -32,7 +32,7 @@ TEST(Trace, KeepsEveryNthTickOfALongRunWithinItsRoom) {
   }
 }
 
-TEST(Trace, CountsWhatComesAfterTheExpectedEnd) {
+TEST(Trace, CountsTicksAfterTheExpectedEnd) {
   session::Trace trace(50, 100);
   run(trace, 80);
   EXPECT_EQ(trace.rows().size(), 50U);

@@ -16,7 +16,7 @@
 namespace thimble::session {
 namespace {
 
-/// A run with two knobs, whose viewers look on in this process.
+/// Run with two knobs and viewers in this process.
 class ViewerWatchTest : public ::testing::Test {
  protected:
   ViewerWatchTest() {
@@ -38,7 +38,7 @@ class ViewerWatchTest : public ::testing::Test {
     return SharedReader::over(run_->memory().again().value()).value();
   }
 
-  /// Looks `times` and returns what was said.
+  /// Checks `times` times and returns the logged text.
   std::string step(int times = 1) {
     said_.str("");
     for (int i = 0; i < times; ++i) {
@@ -53,7 +53,7 @@ class ViewerWatchTest : public ::testing::Test {
   std::optional<ViewerWatch> watch_;
 };
 
-TEST_F(ViewerWatchTest, TellsWhoLooksOnAndWhoHasLeft) {
+TEST_F(ViewerWatchTest, LogsAttachedAndDetachedViewers) {
   EXPECT_EQ(step(), "");
   const std::string self = std::to_string(getpid());
   auto viewer = view();
@@ -64,9 +64,9 @@ TEST_F(ViewerWatchTest, TellsWhoLooksOnAndWhoHasLeft) {
   EXPECT_EQ(step(10), "");
 }
 
-TEST_F(ViewerWatchTest, NoticesThatAViewerDied) {
-  int ready[2];  // the child writes once it looks on
-  int leave[2];  // the parent closes once it has seen the child
+TEST_F(ViewerWatchTest, LogsAViewerThatDied) {
+  int ready[2];  // the child writes once it is attached
+  int leave[2];  // the parent closes once it has detected the child
   ASSERT_EQ(pipe(ready), 0);
   ASSERT_EQ(pipe(leave), 0);
   const pid_t child = fork();
@@ -89,7 +89,7 @@ TEST_F(ViewerWatchTest, NoticesThatAViewerDied) {
   close(leave[0]);
 }
 
-TEST_F(ViewerWatchTest, HasRoomForManyViewersAndHoldsOutWithMore) {
+TEST_F(ViewerWatchTest, ManyViewersFitAndMoreAreHarmless) {
   std::vector<std::unique_ptr<SharedReader>> viewers;
   for (std::size_t i = 0; i < kViewersMost + 3; ++i) viewers.push_back(view());
   EXPECT_EQ(run_->viewers().size(), kViewersMost);
@@ -97,7 +97,7 @@ TEST_F(ViewerWatchTest, HasRoomForManyViewersAndHoldsOutWithMore) {
   EXPECT_TRUE(run_->viewers().empty());
 }
 
-TEST_F(ViewerWatchTest, TellsOfAKnobOnceItStandsStill) {
+TEST_F(ViewerWatchTest, LogsAKnobOnceItIsUnchanged) {
   const auto viewer = view();
   step();
   for (int i = 0; i < 20; ++i) {
@@ -109,19 +109,19 @@ TEST_F(ViewerWatchTest, TellsOfAKnobOnceItStandsStill) {
   EXPECT_EQ(step(20), "");
   viewer->turn_knob(0, 300);
   step();
-  viewer->turn_knob(0, 590);  // back where it was: nothing was set
+  viewer->turn_knob(0, 590);  // back at its value: nothing was set
   EXPECT_EQ(step(20), "");
   viewer->turn_knob(1, 0.5);
   EXPECT_EQ(step(20), "info tick 5, 0.005 s: A viewer set a: damping from 1 to 0.5 N s/m.\n");
 }
 
-TEST_F(ViewerWatchTest, TellsOfAPause) {
+TEST_F(ViewerWatchTest, LogsAPause) {
   const auto viewer = view();
   step();
   viewer->ask_pause(true);
-  EXPECT_EQ(step(3), "info tick 5, 0.005 s: A viewer pauses the run.\n");
+  EXPECT_EQ(step(3), "info tick 5, 0.005 s: A viewer paused the run.\n");
   viewer->ask_pause(false);
-  EXPECT_EQ(step(3), "info tick 5, 0.005 s: A viewer lets the run go on.\n");
+  EXPECT_EQ(step(3), "info tick 5, 0.005 s: A viewer resumed the run.\n");
 }
 
 }  // namespace

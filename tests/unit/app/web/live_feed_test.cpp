@@ -1,4 +1,4 @@
-// What pages of a run that goes on are told, without a network.
+// Updates for the pages of a live run, without a network.
 #include "web/live_feed.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ class LiveFeedTest : public ::testing::Test {
   void run_ticks(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) run_->store_tick(live_tick(next_++));
   }
-  /// Reads all messages that there are for a page.
+  /// Reads all available messages for a page.
   std::string all(LiveFeed::Place& place) const {
     std::string bytes;
     while (feed_->has_message(place)) bytes += feed_->message(place);
@@ -49,7 +49,7 @@ std::vector<std::uint32_t> from_to(std::uint32_t begin, std::uint32_t end) {
   return all;
 }
 
-TEST_F(LiveFeedTest, EveryTickReachesAPageOnceAndIsWhatItWas) {
+TEST_F(LiveFeedTest, EveryTickReachesAPageOnceUnchanged) {
   LiveFeed::Place place;
   std::string told;
   for (const std::size_t count : {1U, 33U, 0U, 40U, 1U}) {
@@ -75,7 +75,7 @@ TEST_F(LiveFeedTest, EveryTickReachesAPageOnceAndIsWhatItWas) {
   }
 }
 
-TEST_F(LiveFeedTest, WhoComesLateIsToldWhatIsKept) {
+TEST_F(LiveFeedTest, LatePageGetsTheStoredUpdates) {
   LiveFeed::Place early, late;
   for (int update = 0; update < 5; ++update) {
     run_ticks(20);
@@ -95,7 +95,7 @@ TEST_F(LiveFeedTest, SlowPageLearnsHowManyTicksItMissed) {
     run_ticks(1000);
     feed_->step();
   }
-  // What is kept is bounded, however long the page stays away.
+  // Stored updates are bounded, however long the page is disconnected.
   EXPECT_LE(feed_->end() - feed_->oldest(), 61U);
   EXPECT_EQ(feed_->lost(), 0U);
   const std::string rest = all(slow);
@@ -121,11 +121,11 @@ TEST_F(LiveFeedTest, AMessageToASlowPageIsBounded) {
   EXPECT_GT(messages, 3U);
 }
 
-TEST_F(LiveFeedTest, SaysHowManyTicksCameTooFastForAnybody) {
+TEST_F(LiveFeedTest, ReportsOverwrittenTicks) {
   LiveFeed::Place place;
   run_ticks(1);
   feed_->step();
-  run_ticks(5000);  // the ring has 2000
+  run_ticks(5000);  // the ring has 2000 entries
   feed_->step();
   EXPECT_EQ(feed_->lost(), 3000U);
   const auto updates = updates_of(all(place));
@@ -163,7 +163,7 @@ TEST_F(LiveFeedTest, ClayShapesOutliveForgottenTicks) {
   EXPECT_EQ(updates[0].array<std::uint32_t>("shapes.corners").size(), 12U);
 }
 
-TEST_F(LiveFeedTest, ADentStaysForWhoComesWhenItsUpdateIsForgotten) {
+TEST_F(LiveFeedTest, DentOutlivesItsForgottenUpdate) {
   auto patch = std::make_unique<render::BodyPatch>();
   patch->object = 0;
   patch->point_count = 3;
@@ -186,7 +186,7 @@ TEST_F(LiveFeedTest, ADentStaysForWhoComesWhenItsUpdateIsForgotten) {
             (std::vector<float>{0, 0, 0, 0, 0, 0, 0, 0.5F, -0.1F}));
 }
 
-TEST_F(LiveFeedTest, TellsOfAFaultAndOfWhatTheGateDidOnceAndLonger) {
+TEST_F(LiveFeedTest, ReportsAFaultAndTheGateOnce) {
   LiveFeed::Place place;
   run_ticks(10);
   for (int i = 0; i < 40; ++i) {
@@ -220,7 +220,7 @@ TEST_F(LiveFeedTest, TellsOfAFaultAndOfWhatTheGateDidOnceAndLonger) {
   }
 }
 
-TEST_F(LiveFeedTest, TellsNothingWhileNothingHappensAndTheEndOnce) {
+TEST_F(LiveFeedTest, SendsNothingWithoutChangesAndTheEndOnce) {
   run_ticks(5);
   feed_->step();
   const std::uint64_t before = feed_->end();

@@ -13,7 +13,7 @@
 
 namespace thimble::web {
 
-/// An update as a page reads it (web/live_feed.h).
+/// Update as read by a page (web/live_feed.h).
 struct LiveUpdate {
   nlohmann::json json;
   std::string numbers;
@@ -30,7 +30,7 @@ struct LiveUpdate {
   }
 };
 
-/// Takes a message apart; stops where it makes no sense.
+/// Parses a message; stops at invalid data.
 inline std::vector<LiveUpdate> updates_of(std::string_view message) {
   std::vector<LiveUpdate> updates;
   while (message.size() >= 8) {
@@ -56,7 +56,7 @@ inline std::vector<std::uint32_t> ticks_of(std::string_view message) {
   return ticks;
 }
 
-/// A tick all of whose numbers follow from one.
+/// Tick in which all values follow from one number.
 inline driver::TickRecord live_tick(std::uint64_t number) {
   driver::TickRecord tick;
   tick.tick = number;
@@ -67,7 +67,7 @@ inline driver::TickRecord live_tick(std::uint64_t number) {
   return tick;
 }
 
-/// A triangle that dents, and two that keep what is pressed into them.
+/// A triangle that dents, and two that are deformed permanently.
 inline session::SharedScene live_scene() {
   session::SharedScene scene;
   scene.name = "small";

@@ -1,4 +1,4 @@
-// The server of a page that is live, with programs in this process in place of browsers.
+// The server of a live page, with clients in this process instead of browsers.
 #include "web/web_server.h"
 
 #include <arpa/inet.h>
@@ -35,7 +35,7 @@ namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-/// What a program names of itself; empty: what the page itself would.
+/// Headers of a client; empty: those of the page itself.
 struct Asking {
   std::string target;
   std::string host{};
@@ -79,7 +79,7 @@ class WebServerTest : public ::testing::Test {
     socket.connect({asio::ip::address_v4::loopback(), port_});
     return socket;
   }
-  /// Asks for a page; returns status and body.
+  /// Requests a page; returns status and body.
   std::pair<unsigned, std::string> get(const Asking& asking, bool upgrade = false) {
     tcp::socket socket = connect();
     http::request<http::empty_body> request(http::verb::get, asking.target, 11);
@@ -99,7 +99,7 @@ class WebServerTest : public ::testing::Test {
     return {parser.get().result_int(), parser.get().body()};
   }
 
-  /// Asks something of the run, as a page does; returns the status.
+  /// Sends a command to the run, as a page does; returns the status.
   unsigned post(const std::string& words, const Asking& asking, const std::string& token,
                 const std::string& run = {}) {
     tcp::socket socket = connect();
@@ -118,7 +118,7 @@ class WebServerTest : public ::testing::Test {
   }
 
   using Page = websocket::stream<tcp::socket>;
-  /// Opens a page; returns the status of the answer, 101 if it is open.
+  /// Opens a page; returns the status of the response, 101 if it is open.
   unsigned open(Page& page) {
     page.next_layer() = connect();
     page.read_message_max(0);
@@ -130,7 +130,7 @@ class WebServerTest : public ::testing::Test {
     page.handshake(response, here(), "/live" + token_, failed);
     return failed ? 0 : response.result_int();
   }
-  /// Reads until so many ticks came, or the page is closed; returns them.
+  /// Reads until the given number of ticks arrived, or the page is closed; returns them.
   std::vector<std::uint32_t> read_ticks(Page& page, std::size_t count) {
     std::vector<std::uint32_t> ticks;
     while (ticks.size() < count) {
@@ -163,7 +163,7 @@ class WebServerTest : public ::testing::Test {
   std::uint64_t lost_ = 0;
 };
 
-TEST(RequestGuard, LetsInWhoKnowsTheTokenAndAsksAsThePageItself) {
+TEST(RequestGuard, RequiresTheTokenAndTheServedOrigin) {
   const RequestGuard guard = RequestGuard::make().value();
   EXPECT_EQ(guard.token().size(), 32U);
   EXPECT_NE(guard.token(), RequestGuard::make().value().token());
@@ -223,7 +223,7 @@ TEST_F(WebServerTest, NothingIsSentWithoutTheToken) {
   }
 }
 
-TEST_F(WebServerTest, AsksOfTheRunWhatThePageItselfPostsAlone) {
+TEST_F(WebServerTest, AcceptsCommandsOnlyFromThePage) {
   const std::string own = "http://" + here(), token = token_.substr(7);
   run_ticks(1);
   Page page(io_);
@@ -232,11 +232,11 @@ TEST_F(WebServerTest, AsksOfTheRunWhatThePageItselfPostsAlone) {
   EXPECT_EQ(post("pause", {"/steer", {}, "http://evil.example"}, token), 403U);
   EXPECT_EQ(post("pause", {"/steer", {}, own}, ""), 403U);
   EXPECT_EQ(post("pause", {"/steer" + token_, {}, own}, ""), 403U);
-  EXPECT_EQ(get({"/steer" + token_, {}, own}).first, 403U) << "nothing is asked for by GET";
+  EXPECT_EQ(get({"/steer" + token_, {}, own}).first, 403U) << "commands by GET are refused";
   EXPECT_FALSE(run_->pause_asked());
   EXPECT_EQ(post("pause", {"/steer", {}, own}, token), 200U);
   EXPECT_TRUE(run_->pause_asked());
-  EXPECT_EQ(post("restart", {"/steer", {}, own}, token), 409U) << "nobody would begin it anew";
+  EXPECT_EQ(post("restart", {"/steer", {}, own}, token), 409U) << "the run cannot be restarted";
 }
 
 TEST_F(WebServerTest, IdleConnectionsDoNotKeepPagesOut) {
@@ -249,7 +249,7 @@ TEST_F(WebServerTest, IdleConnectionsDoNotKeepPagesOut) {
   EXPECT_EQ(open(page), 101U);
 }
 
-TEST_F(WebServerTest, OpenPagesOutliveIdleConnections) {
+TEST_F(WebServerTest, OpenPagesSurviveIdleConnections) {
   run_ticks(1);
   Page page(io_);
   ASSERT_EQ(open(page), 101U);
@@ -303,7 +303,7 @@ TEST_F(WebServerTest, GarbageEndsOnlyItsConnection) {
   ASSERT_EQ(open(rude), 101U);
   error_code failed;
   long_winded.write(asio::buffer(std::string(100 * WebServer::kSaidMost, 'x')), failed);
-  // A frame that says it has 2^62 bytes.
+  // A frame with a stated length of 2^62 bytes.
   const std::string huge("\x82\xff\x40\0\0\0\0\0\0\0\1\2\3\4", 14);
   asio::write(rude.next_layer(), asio::buffer(huge), failed);
   good.write(asio::buffer(std::string("something short")), failed);
@@ -336,7 +336,7 @@ TEST_F(WebServerTest, SlowClientDoesNotStallOthers) {
   EXPECT_EQ(to_second, to_first);
   for (std::size_t i = 0; i < to_first.size(); ++i) ASSERT_EQ(to_first[i], i);
   EXPECT_EQ(lost_, 0U);
-  // What it has not read it is told of, once it does.
+  // Once it reads again, it gets the number of lost ticks.
   run_ticks(1);
   std::size_t came = 0;
   while (came + lost_ < 100'001) {
@@ -363,7 +363,7 @@ TEST_F(WebServerTest, ThePageHasTheLastTickOfARunThatEnds) {
   EXPECT_EQ(page.reason().code, websocket::close_code::normal);
 }
 
-TEST_F(WebServerTest, AnotherRunOfTheNameIsToldToPagesThatLoadAnew) {
+TEST_F(WebServerTest, ReloadShowsNewRunOfSameName) {
   Page page(io_);
   ASSERT_EQ(open(page), 101U);
   run_ticks(10);
@@ -382,13 +382,13 @@ TEST_F(WebServerTest, SlowPagesAreClosedWithTheCodeOfAnotherRun) {
   constexpr std::uint32_t kNextRun = 5'000'000;
   Page page(io_);
   ASSERT_EQ(open(page), 101U);
-  // More than the sockets hold, so that the server is still sending.
+  // More data than the sockets buffer, so that the server is still sending.
   for (int part = 0; part < 20; ++part) {
     run_ticks(10'000);
     std::this_thread::sleep_for(2 * WebServer::kStep);
   }
   begin_run();
-  std::this_thread::sleep_for(std::chrono::milliseconds(600));  // it looks four times a second
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));  // it checks four times a second
   next_ = kNextRun;
   run_ticks(10);
   for (const std::uint32_t tick : read_ticks(page, 10'000'000)) ASSERT_LT(tick, kNextRun);
@@ -399,7 +399,7 @@ TEST_F(WebServerTest, TheFirstUpdateNamesTheRun) {
   std::vector<std::string> runs;
   for (int run = 0; run < 2; ++run) {
     if (run > 0) begin_run();
-    // It looks for another run four times a second.
+    // The server checks for another run four times a second.
     std::this_thread::sleep_for(std::chrono::milliseconds(600));
     run_ticks(1);
     Page page(io_);
@@ -414,7 +414,7 @@ TEST_F(WebServerTest, TheFirstUpdateNamesTheRun) {
   EXPECT_NE(runs[0], runs[1]);
 }
 
-TEST_F(WebServerTest, ARunIsNotSteeredByAPageOfAnother) {
+TEST_F(WebServerTest, PageOfAnotherRunCannotSteerARun) {
   const std::string own = "http://" + here(), token = token_.substr(7);
   run_ticks(1);
   Page page(io_);
@@ -424,7 +424,7 @@ TEST_F(WebServerTest, ARunIsNotSteeredByAPageOfAnother) {
   EXPECT_FALSE(run_->pause_asked());
 }
 
-TEST(WebServer, APortThatIsTakenIsRefusedWithASentence) {
+TEST(WebServer, UsedPortIsAnError) {
   session::RunAttachment runs("none");
   const auto first = WebServer::listen(runs, 0);
   ASSERT_TRUE(first);

@@ -1,4 +1,4 @@
-// What a page asks of a run, without a network.
+// Commands of a page to a run, without a network.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -13,7 +13,7 @@
 namespace thimble::web {
 namespace {
 
-/// A run that pages may ask for anything, unless `scene` says otherwise.
+/// Run that accepts all commands of pages, unless `scene` prevents it.
 struct Steered {
   explicit Steered(session::SharedScene scene = steered_scene())
       : run(session::SharedRun::create("", scene, 100).value()),
@@ -26,7 +26,7 @@ struct Steered {
     scene.knobs.push_back({"clay: stiffness", "N/m", 10, 1000, 300});
     return scene;
   }
-  /// Returns why a request is refused; empty: it is not.
+  /// Returns the reason why a request is refused; empty if it is accepted.
   std::string ask(const std::string& words) const {
     const auto asked = steer_run(*reader, words);
     return asked ? std::string() : asked.error().message;
@@ -36,11 +36,12 @@ struct Steered {
   std::unique_ptr<session::SharedReader> reader;
 };
 
-TEST(SteerRun, PausesStepsBeginsAnewAndTurnsKnobs) {
+TEST(SteerRun, PausesStepsRestartsAndChangesKnobs) {
   const Steered steered;
   EXPECT_EQ(steered.ask("pause"), "");
   EXPECT_TRUE(steered.run->pause_asked());
-  EXPECT_NE(steered.ask("step 3").find("pause it first"), std::string::npos) << "it goes on still";
+  EXPECT_NE(steered.ask("step 3").find("pause it first"), std::string::npos)
+      << "the run is not paused";
   steered.run->set_state(session::RunState::kPaused);
   EXPECT_EQ(steered.ask("step 3"), "");
   EXPECT_EQ(steered.run->steps_asked(), 3U);
@@ -53,7 +54,7 @@ TEST(SteerRun, PausesStepsBeginsAnewAndTurnsKnobs) {
   EXPECT_EQ(steered.run->restart_order_after(0)->scene, "") << "no page names a file";
 }
 
-TEST(SteerRun, TellsWhatItCannotAskFor) {
+TEST(SteerRun, RejectsUnsupportedRequests) {
   const Steered steered;
   for (const char* words :
        {"", " ", "stop", "pause now", "restart /etc/passwd", "step", "step ", "step -1", "step 1x",
@@ -77,13 +78,13 @@ TEST(SteerRun, TellsWhatItCannotAskFor) {
 
   steered.run->close();
   for (const char* words : {"pause", "restart", "turn clay: stiffness=20"}) {
-    EXPECT_NE(steered.ask(words).find("hears nothing more"), std::string::npos) << words;
+    EXPECT_NE(steered.ask(words).find("accepts no requests"), std::string::npos) << words;
   }
   desk.run->set_state(session::RunState::kEnded);
   EXPECT_EQ(desk.ask("pause"), "The run has ended.");
 }
 
-TEST(SteerRun, IsShownToPagesWithKnobsAndWhatTheRunTells) {
+TEST(SteerRun, PagesShowKnobsAndTheNotice) {
   const Steered steered;
   LiveFeed feed(*steered.reader);
   LiveFeed::Place place;
@@ -94,7 +95,7 @@ TEST(SteerRun, IsShownToPagesWithKnobsAndWhatTheRunTells) {
   const auto updates = updates_of(feed.message(place));
   ASSERT_FALSE(updates.empty());
   const nlohmann::json& last = updates.back().json;
-  EXPECT_EQ(last["knobs"], nlohmann::json::array({77.0})) << "told though no tick has passed";
+  EXPECT_EQ(last["knobs"], nlohmann::json::array({77.0})) << "reported without a new tick";
   EXPECT_EQ(last["notice"], "line 3: wrong");
 }
 

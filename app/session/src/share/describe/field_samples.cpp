@@ -14,13 +14,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kLooks = 24;        // along each side of the workspace, to see where a field is
-constexpr double kFelt = 0.15;    // of the strongest; less is not drawn out to [chosen]
-constexpr double kSamples = 350;  // about as many as a person can tell apart [chosen]
-constexpr int kSideMost = 16;     // so that 16^3 are kFieldSamplesMost
+constexpr int kLooks =
+    24;  // samples along each side of the workspace, to find where a field is felt
+constexpr double kFelt =
+    0.15;  // fraction of the largest force; the grid covers the region above it [chosen]
+constexpr double kSamples = 350;  // about as many as a user can distinguish [chosen]
+constexpr int kSideMost = 16;     // 16^3 equals kFieldSamplesMost
 static_assert(kSideMost * kSideMost * kSideMost <= kFieldSamplesMost);
 
-/// The fields of a scene, apart from what is felt.
+/// Fields of a scene, built separately from those that are felt.
 class Fields {
  public:
   explicit Fields(const scene::Scene& scene) {
@@ -41,7 +43,7 @@ class Fields {
   std::vector<std::unique_ptr<render::ObjectTouch>> fields_;
 };
 
-/// Samples the middles of `counts` cells along each side of a box.
+/// Samples the centres of a grid with `counts` cells along the sides of a box.
 std::vector<SharedScene::FieldSample> sample(const Fields& fields, const Eigen::AlignedBox3d& box,
                                              const Eigen::Array3i& counts) {
   std::vector<SharedScene::FieldSample> samples;

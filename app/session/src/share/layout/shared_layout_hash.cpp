@@ -37,7 +37,8 @@ THIMBLE_LAYOUT_ENUM(thimble::session::SharedKind, kMesh, kShape, kField, kPaged)
 namespace thimble::session {
 namespace {
 
-/// All that lies in the memory, or is a number in it.
+/// Returns the combined hash of all types in the memory, and of the constants that are stored in
+/// it.
 constexpr std::uint64_t of_all() noexcept {
   std::uint64_t hash = driver::layout_detail::kBegin;
   for (const std::uint64_t part :

@@ -38,7 +38,7 @@ bool FileWatch::step() {
     if (!file.fresh || file.still < kSettled || now.bytes < 0) continue;
     file.fresh = false;
     std::string text = scene::text_of(file.path);
-    if (text == file.told) continue;  // written, and nothing changed
+    if (text == file.told) continue;  // written without a change
     file.told = std::move(text);
     changed = true;
   }

@@ -41,24 +41,24 @@ bool NextRun::prepare(const std::filesystem::path& scene) {
   return false;
 }
 
-/// Prepares what a viewer has asked for since the last look, if one has; tells whether it could.
+/// Prepares the run that a viewer has requested since the last check, if any. Returns whether it
+/// succeeded.
 bool NextRun::prepare_ordered() {
   const auto order = session_->shared()->restart_order_after(last_order_);
   if (!order) return false;
   last_order_ = order->number;
-  scene::logger().info("A viewer asks for {}.",
-                       order->scene.empty() ? "the run from its first tick" : order->scene);
+  scene::logger().info("A viewer requests {}.", order->scene.empty() ? "a restart" : order->scene);
   return prepare(order->scene.empty() ? scene_ : std::filesystem::path(order->scene));
 }
 
-/// Prepares the scene once more if its files have changed; tells whether it could.
+/// Prepares the scene again if its files have changed. Returns whether it succeeded.
 bool NextRun::prepare_changed() {
   if (!reload_ || !files_.step()) return false;
-  if (files_.as_at_first()) {  // what runs lies there again
+  if (files_.as_at_first()) {  // the files are as in the current run again
     session_->shared()->set_notice("");
     return false;
   }
-  scene::logger().info("{} or its arm's file has changed.", scene_.string());
+  scene::logger().info("{} or the file of its arm has changed.", scene_.string());
   return prepare(scene_);
 }
 
@@ -73,7 +73,7 @@ void NextRun::step(bool stop) {
   hear_pace();
   if (!prepare_ordered() && !prepare_changed()) return;
   session_->shared()->close();
-  prepare_ordered();  // what was asked while the other was prepared
+  prepare_ordered();  // a request made during the preparation
   end_.store(true);
 }
 
@@ -83,10 +83,11 @@ std::unique_ptr<Session> NextRun::take(driver::ServoEnd end, bool stop) {
   shared.close();
   hear_pace();
   if (shared.stop_asked()) return nullptr;
-  // After a fault somebody is to look first.
+  // After a fault the run is not restarted, so that the user checks the cause first.
   const bool fault = end == driver::ServoEnd::kFault;
   if (fault && shared.restart_order_after(last_order_)) {
-    shared.set_notice("The run is not begun anew: it has ended by a fault, look at that first.");
+    shared.set_notice(
+        "The run is not restarted because it ended with a fault; check the fault first.");
   }
   if (!fault) prepare_ordered();
   pause_ = end == driver::ServoEnd::kDone && shared.pause_asked();

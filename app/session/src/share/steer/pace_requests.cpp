@@ -1,5 +1,4 @@
-// What a viewer asks of a run's course: to begin anew, to go on by single ticks, or at another
-// pace.
+// Requests of viewers to restart, single-step, or change the speed of a run.
 #include <algorithm>
 #include <cmath>
 
@@ -12,47 +11,44 @@ std::string SharedReader::why_real() const {
   const auto found = std::find_if(scene_.arms.begin(), scene_.arms.end(), real);
   if (found == scene_.arms.end()) return {};
   return "The run has a physical arm (" + found->device +
-         "): it can be paused and stopped; its time is that of the world, and only a person at the "
-         "arm begins a run.";
+         "): it runs in real time and can only be paused and stopped. Only a person at the arm may "
+         "start a run.";
 }
 
 driver::Result<void> SharedReader::heard() const {
-  // Pairs with SharedRun::close: of a request and the closing, one of the two sides sees the other.
+  // Pairs with SharedRun::close: either the run sees the request, or this sees that it is closed.
   std::atomic_thread_fence(std::memory_order_seq_cst);
   if (live_->closed.load() != 1) return {};
   return driver::Error{
-      "The run has just ended and hears nothing more; if it begins anew, ask again in a moment."};
+      "The run has just ended and accepts no requests. If it restarts, try again shortly."};
 }
 
 std::string SharedReader::why_no_restart() const {
   if (std::string real = why_real(); !real.empty()) return real;
   if (scene_.restarts) return {};
-  return "This run cannot be begun anew from a viewer; end it and start it again where it was "
+  return "This run cannot be restarted from a viewer; restart it in the terminal where it was "
          "started.";
 }
 
 std::string SharedReader::why_no_step() const {
   if (std::string real = why_real(); !real.empty()) return real;
   if (!scene_.wall_clock) return {};
-  return "This run goes by the time of the world, which has no single ticks; start it with --clock "
-         "paced.";
+  return "This run is in real time, which has no single ticks; start it with --clock paced.";
 }
 
 std::string SharedReader::why_no_speed() const {
   if (std::string real = why_real(); !real.empty()) return real;
   if (scene_.paced) return {};
   return scene_.wall_clock
-             ? "This run goes by the time of the world; start it with --clock paced to choose its "
-               "speed."
-             : "This run goes as fast as it computes; start it with --clock paced to choose its "
-               "speed.";
+             ? "This run is in real time; start it with --clock paced to choose its speed."
+             : "This run is as fast as possible; start it with --clock paced to choose its speed.";
 }
 
 driver::Result<void> SharedReader::ask_steps(std::uint64_t ticks) {
   if (std::string why = why_no_step(); !why.empty()) return driver::Error{why};
   if (auto now = heard(); !now) return now;
   if (state() != RunState::kPaused) {
-    return driver::Error{"Single ticks are for a run that is paused; pause it first."};
+    return driver::Error{"Only a paused run can be single-stepped; pause it first."};
   }
   live_->requests.steps.fetch_add(std::clamp<std::uint64_t>(ticks, 1, kStepsMost));
   return heard();
@@ -61,7 +57,7 @@ driver::Result<void> SharedReader::ask_steps(std::uint64_t ticks) {
 driver::Result<void> SharedReader::ask_speed(double speed) {
   if (std::string why = why_no_speed(); !why.empty()) return driver::Error{why};
   if (auto now = heard(); !now) return now;
-  if (std::isnan(speed)) return driver::Error{"A speed is a number from 0.1 to 4."};
+  if (std::isnan(speed)) return driver::Error{"The speed must be a number from 0.1 to 4."};
   live_->requests.speed.store(std::clamp(speed, kSpeedLeast, kSpeedMost));
   return heard();
 }
@@ -76,9 +72,9 @@ driver::Result<void> SharedReader::ask_restart(const std::string& scene) {
   if (auto now = heard(); !now) return now;
   SharedRestart order;
   if (scene.size() >= order.scene.size()) {
-    return driver::Error{"The path of the scene is too long; copy the file elsewhere."};
+    return driver::Error{"The path of the scene is too long; copy the file to a shorter path."};
   }
-  if (!take_turn()) return driver::Error{"Another viewer is just asking for something."};
+  if (!take_turn()) return driver::Error{"Another viewer is sending a request; try again."};
   order.number = live_->requests.restart_number.load() + 1;
   std::copy(scene.begin(), scene.end(), order.scene.begin());
   live_->requests.restart.store(order);

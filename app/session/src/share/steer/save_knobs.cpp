@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Splits the end of a name, "texture roughness 2", into group, key and number.
+/// Splits the end of a knob's name, such as "texture roughness 2", into group, key and number.
 void name_number(std::string text, scene::SceneNumber& number) {
   const std::size_t last = text.rfind(' ');
   if (last != std::string::npos &&
@@ -31,7 +31,8 @@ void name_number(std::string text, scene::SceneNumber& number) {
   number.key = space == std::string::npos ? text : text.substr(space + 1);
 }
 
-/// Returns which number of the file a knob is, by its name: "ball: friction coefficient".
+/// Returns the number in the scene file to which a knob belongs, by its name, such as "ball:
+/// friction coefficient".
 std::optional<scene::SceneNumber> number_of(const SharedScene& scene,
                                             const SharedScene::Knob& knob) {
   for (const SharedScene::Object& object : scene.objects) {
@@ -49,13 +50,13 @@ driver::Result<fs::path> choose_file(const fs::path& scene, const KnobsFile& whe
   if (where.over) {
     if (!shipped) return scene;
     return driver::Error{scene.string() +
-                         " came with Thimble and is not written over; save a copy in its place."};
+                         " is shipped with Thimble and is not overwritten; save a copy instead."};
   }
   std::error_code status;
   if (!where.file.empty()) {
     const fs::path file = fs::absolute(where.file).lexically_normal();
     if (!fs::exists(file, status)) return file;
-    return driver::Error{file.string() + " is there already; choose another name."};
+    return driver::Error{file.string() + " already exists; choose another name."};
   }
   const fs::path folder = shipped ? scene::data_folder() / "scenes" : scene.parent_path();
   fs::create_directories(folder, status);
@@ -67,7 +68,7 @@ driver::Result<fs::path> choose_file(const fs::path& scene, const KnobsFile& whe
   return file;
 }
 
-/// Writes the text under another name, reads it as a scene, and gives it its name then.
+/// Writes the text to a temporary file, loads it as a scene, and renames it only if it is valid.
 driver::Result<void> write_scene(const std::string& text, const fs::path& file) {
   const fs::path draft = file.parent_path() / ("." + file.filename().string() + ".new");
   std::error_code status;
@@ -83,10 +84,10 @@ driver::Result<void> write_scene(const std::string& text, const fs::path& file) 
   const auto read = scene::load_scene(draft, {.several_arms = true});
   if (!read) {
     fs::remove(draft, status);
-    return driver::Error{"The knobs as they are make no scene of their own: " +
+    return driver::Error{"The current knob values do not make a valid scene: " +
                          read.error().message};
   }
-  // A link to the scene stays a link.
+  // A symbolic link to the scene remains a link.
   std::error_code none;
   const fs::path target = fs::is_symlink(file, none) ? fs::canonical(file, none) : file;
   fs::rename(draft, target, status);
@@ -100,7 +101,7 @@ std::string SavedKnobs::text() const {
   std::string text = file.string();
   for (const std::string& knob : written) text += "\n    " + knob;
   for (const std::string& knob : absent) {
-    text += "\n    " + knob + " is not saved: the scene's file has no key for it";
+    text += "\n    " + knob + " is not saved: the scene file has no key for it";
   }
   return text;
 }
@@ -109,7 +110,7 @@ driver::Result<SavedKnobs> save_knobs(const SharedReader& reader, const KnobsFil
   const SharedScene& scene = reader.scene();
   SavedKnobs saved;
   std::vector<scene::SceneNumber> numbers;
-  std::vector<std::string> names;  // of each of them; empty: it goes with the one before
+  std::vector<std::string> names;  // Name of each number; empty if it belongs to the previous one.
   for (std::size_t i = 0; i < scene.knobs.size(); ++i) {
     const SharedScene::Knob& knob = scene.knobs[i];
     const double value = reader.knob_wanted(i);
@@ -125,7 +126,8 @@ driver::Result<SavedKnobs> save_knobs(const SharedReader& reader, const KnobsFil
     numbers.push_back(*number);
     names.push_back(name);
     if (number->group != "friction" || number->key != "coefficient") continue;
-    // What holds before it slides goes with what slides, as the knob turns both.
+    // The knob changes static and kinetic friction together, so the static coefficient is scaled
+    // too.
     number->key = "static_coefficient";
     number->value = value / knob.initial;
     number->scales = true;
@@ -133,11 +135,11 @@ driver::Result<SavedKnobs> save_knobs(const SharedReader& reader, const KnobsFil
     names.emplace_back();
   }
   if (names.empty() && saved.absent.empty()) {
-    return driver::Error{"No knob has been turned; there is nothing to save."};
+    return driver::Error{"No knob has changed; there is nothing to save."};
   }
   const fs::path from(scene.file);
   const std::string text = scene::text_of(from);
-  if (text.empty()) return driver::Error{from.string() + ": the scene's file cannot be read."};
+  if (text.empty()) return driver::Error{from.string() + ": the scene file cannot be read."};
   const auto file = choose_file(from, where);
   if (!file) return file.error();
   auto edited = scene::put_numbers(text, numbers);
@@ -149,7 +151,7 @@ driver::Result<SavedKnobs> save_knobs(const SharedReader& reader, const KnobsFil
     if (!names[i].empty()) (absent ? saved.absent : saved.written).push_back(names[i]);
   }
   if (saved.written.empty()) {
-    return driver::Error{"The scene's file has no key for " + saved.absent.front() +
+    return driver::Error{"The scene file has no key for " + saved.absent.front() +
                          "; nothing was saved."};
   }
   std::string whole = std::move(edited->text);
