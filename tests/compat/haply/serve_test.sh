@@ -18,7 +18,7 @@ for _ in 1 2 3 4 5 6; do
   serve --clock virtual --hand press.txt --record outer.h5 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" \
     --device 0001 --yes --no-real-time --no-view --duration 4 --record inner.h5 >run.txt 2>&1
   status=$?
-  [ $status = 0 ] || expect 0 'no_reports|loop_stalled|was blocked|stalled for longer|told nothing' cat run.txt
+  [ $status = 0 ] || expect 0 'no_reports|loop_stalled|was blocked|stalled for longer|reported nothing' cat run.txt
   for end in outer inner; do expect 0 '' "$thimble" export $end.h5 --csv $end.csv; done
   awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) { if ($i ~ /^p_WT.x/) p = i; if ($i ~ /^v_WT.x/) v = i; if ($i ~ /^f_sent_W.x/) f = i; if ($i == "fresh") n = i }; next }
     $n { print $p, $(p + 1), $(p + 2), $v, $(v + 1), $(v + 2), $f, $(f + 1), $(f + 2); next }
