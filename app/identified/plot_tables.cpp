@@ -64,7 +64,7 @@ bringup::TwoMassTheta stiff_of(const bringup::CableFit& lines) {
 std::string fit_table(const bringup::FittedMotion& motion) {
   const double middle =
       0.5 * static_cast<double>(motion.motion().samples.size()) * motion.motion().dt;
-  return "# time s, acceleration seen, by the fit, m/s^2\n" +
+  return "# time s, acceleration measured, fitted, m/s^2\n" +
          by_axis(motion, middle - kExcerpt / 2, middle + kExcerpt / 2,
                  [&](std::size_t i, double time) {
                    const double left = motion.equations.equations()[i].left;
@@ -74,7 +74,7 @@ std::string fit_table(const bringup::FittedMotion& motion) {
 }
 
 std::string rest_table(const bringup::FittedMotion& motion) {
-  return "# time s, what the fit leaves, m/s^2\n" +
+  return "# time s, residual of the fit, m/s^2\n" +
          by_axis(motion, 0, HUGE_VAL, [&](std::size_t i, double time) {
            return fmt::format("{:.4f} {:.6g}\n", time,
                               motion.residual.rest[static_cast<Eigen::Index>(i)]);
@@ -120,7 +120,7 @@ std::string friction_medians(const bringup::FittedMotion& motion,
 }
 
 std::string masses_table(const bringup::Identified& identified, const scene::ArmFile& file) {
-  std::string text = "# apparent mass by the constants, as seen there, half its interval, kg\n";
+  std::string text = "# apparent mass fitted, measured, half its interval, kg\n";
   const std::vector<bringup::PlaceMass> places =
       bringup::masses_at_places(*identified.over.fit, file);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -136,7 +136,7 @@ std::string masses_table(const bringup::Identified& identified, const scene::Arm
 std::string lines_table(const bringup::Identified& identified, double dt) {
   const bringup::CableFit& lines = identified.lines;
   const bringup::TwoMassTheta stiff = stiff_of(lines);
-  std::string text = "# frequency Hz, motion over that of stiff cables, half the interval\n";
+  std::string text = "# frequency Hz, motion relative to stiff cables, half the interval\n";
   for (int joint = 0; joint < 3; ++joint) {
     for (std::size_t i = 0; i < identified.spectrum.lines.size(); ++i) {
       const bringup::SpectralLine& line = identified.spectrum.lines[i];
@@ -157,7 +157,7 @@ std::string lines_table(const bringup::Identified& identified, double dt) {
 std::string resonance_table(const bringup::Identified& identified, double dt) {
   const bringup::CableFit& lines = identified.lines;
   const bringup::TwoMassTheta stiff = stiff_of(lines);
-  std::string text = "# frequency Hz, motion over that of stiff cables by the constants\n";
+  std::string text = "# frequency Hz, fitted motion relative to stiff cables\n";
   for (int joint = 0; joint < 3; ++joint) {
     for (int k = 0; k <= kFrequencies; ++k) {
       const double share = static_cast<double>(k) / kFrequencies;

@@ -138,7 +138,7 @@ const Mistake kMistakes[] = {
        truth.model.encoders[0].sign *= -1;
        truth.model.drives[0].sign *= -1;
      },
-     "feel_check", "encoders' signs"},
+     "feel_check", "signs of the encoders"},
     {"HomeOffset", [](File& truth, File&) { truth.model.encoders[1].home_counts += 2000; },
      "home_pose", "Home position"},
     {"DelayOneMillisecondMore",
@@ -151,7 +151,7 @@ const Mistake kMistakes[] = {
      },
      "constants", ""},
     {"BaseTilted", [](File& truth, File&) { truth.R_WB = tilt(10) * truth.R_WB; }, "constants",
-     "stands aslant"},
+     "tilt of the base"},
     {"LinkCLonger", [](File& truth, File&) { links(truth).length_c *= 1.05; }, "known_length",
      "scale of positions"},
     {"LinkBLonger", [](File& truth, File&) { links(truth).length_b *= 1.05; }, "known_length",

@@ -109,20 +109,20 @@ TEST(HilSoak, SeesHeatLowerTheForceAndNeverPassTheLimit) {
   EXPECT_LE(figure_value(soak.figures, "motor_heat"), 1);
   EXPECT_GT(figure_value(soak.figures, "current_of_allowed"), 0.95);
   EXPECT_LE(figure_value(soak.figures, "winding_heat"), 1);
-  EXPECT_NE(soak.text.find("Heat lowered the force in"), std::string::npos) << soak.text;
+  EXPECT_NE(soak.text.find("The force was reduced because of heat in"), std::string::npos)
+      << soak.text;
 }
 
 TEST(HilSoak, SaysWhatCannotBeKnownOfAnArm) {
   scene::ArmFile file = scene::load_arm("vintage_phantom").value();
   const HilResult cold = soak_of(file, file, 0.1);
   EXPECT_EQ(cold.outcome, HilOutcome::kPassed) << cold.text;
-  EXPECT_NE(cold.text.find("Its motors do not warm in the simulation"), std::string::npos)
-      << cold.text;
+  EXPECT_NE(cold.text.find("The simulation has no motor heat"), std::string::npos) << cold.text;
   file.heat = {};
   const HilResult unknown = soak_of(file, file, 0.1);
   EXPECT_EQ(unknown.outcome, HilOutcome::kPassed) << unknown.text;
   EXPECT_EQ(figure_value(unknown.figures, "motor_heat"), -1);
-  EXPECT_NE(unknown.text.find("does not say what its motors carry"), std::string::npos)
+  EXPECT_NE(unknown.text.find("the arm file has no joints: continuous_current"), std::string::npos)
       << unknown.text;
 }
 

@@ -54,7 +54,7 @@ TEST(IdentifiedFile, IsTheArmsOwnButForWhatWasMeasured) {
       << text.str();
   EXPECT_TRUE(support::refuses(
       write_identified(arm, file, some_constants(), {.date = "2026-11-23", .arm = "A 1"}),
-      "is there already"));
+      "already exists"));
 }
 
 std::string text_of(const char* arm) {
@@ -126,7 +126,7 @@ TEST(IdentifiedFile, TakesAPeriodOfMoreDigitsThanItWrites) {
 }
 
 TEST(IdentifiedFile, RefusesAFormThatItCannotChange) {
-  EXPECT_TRUE(support::refuses(identified_text("a: [", some_constants(), {}), "no YAML"));
+  EXPECT_TRUE(support::refuses(identified_text("a: [", some_constants(), {}), "not valid YAML"));
   std::string text = text_of("vintage_phantom");
   const std::size_t at = text.find("  tip:\n"), end = text.find("  motors:\n");
   text.replace(at, end - at, "  tip: {mass: 0.075, viscous: 0.005, coulomb: 0.04}\n");

@@ -38,7 +38,8 @@ TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
                                         .seed = seed});
     if (!found) {
       // Its motor oscillates under the force that holds the tip: nobody sees such a motion well.
-      EXPECT_EQ(found.error().message.find("The joints jumped in"), 0U) << found.error().message;
+      EXPECT_EQ(found.error().message.find("The motion cannot be used: in"), 0U)
+          << found.error().message;
       ++refused;
       continue;
     }
@@ -136,10 +137,10 @@ TEST(IdentifyCables, SaysFromWhereOnAStretchIsUnseen) {
   EXPECT_GT(found->lines.unseen_from.minCoeff(), 100);
   const auto sentences = not_identified(*found);
   EXPECT_TRUE(std::any_of(sentences.begin(), sentences.end(), [](const std::string& one) {
-    return one.find("no compliance was seen") != std::string::npos;
+    return one.find("no compliance detected") != std::string::npos;
   }));
   EXPECT_TRUE(std::any_of(sentences.begin(), sentences.end(), [](const std::string& one) {
-    return one.find("Play: not looked for.") == 0;
+    return one.find("Backlash: not searched.") == 0;
   }));
 }
 

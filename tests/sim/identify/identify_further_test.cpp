@@ -88,7 +88,7 @@ TEST(IdentifySaturation, NamesTheMotorThatGivesTooLittle) {
     }
     EXPECT_GE(seen, 1);
     ASSERT_FALSE(found->against.empty());
-    EXPECT_NE(found->against.front().find("gives no more than"), std::string::npos);
+    EXPECT_NE(found->against.front().find("gives at most"), std::string::npos);
   }
   std::printf("worst %.3g, %d of %d intervals hold\n", worst, held, all);
   EXPECT_LT(worst, 0.12);

@@ -110,8 +110,8 @@ TEST(IdentifyJointFriction, IsNotInventedWhereMotorsTurnFreely) {
     EXPECT_FALSE(found->play.friction.seen) << "arm " << k;
     if (!found->play.friction.fits) continue;
     ++told;
-    EXPECT_TRUE(
-        leaves_open(*found, "Dry friction of joints beside that of the tip: none seen above"))
+    EXPECT_TRUE(leaves_open(
+        *found, "Dry friction of joints in addition to that of the tip: none detected above"))
         << "arm " << k;
     for (const Estimate& one : found->play.friction.coulomb) {
       most = std::max(most, one.value + one.plus_minus);
@@ -152,13 +152,14 @@ TEST(IdentifyJointFriction, NamesTheJointOfMostFriction) {
   found.constants.cables.emplace();
   auto& cables = *found.constants.cables;
   for (CableConstants& cable : cables) cable.coulomb = {0.002, 1e-4};
-  EXPECT_EQ(fit_text(found).find("rubs far more"), std::string::npos);
+  EXPECT_EQ(fit_text(found).find("has far more friction"), std::string::npos);
   cables[1].coulomb.value = 0.02;
-  EXPECT_NE(fit_text(found).find("Joint 2 rubs far more"), std::string::npos) << fit_text(found);
-  EXPECT_TRUE(leaves_open(found, "Dry friction of a joint by direction: not told."));
+  EXPECT_NE(fit_text(found).find("Joint 2 has far more friction"), std::string::npos)
+      << fit_text(found);
+  EXPECT_TRUE(leaves_open(found, "Dry friction of a joint by direction: not identified."));
   // As little as the tip has is nothing to look after.
   found.constants.coulomb.value = 0.2;
-  EXPECT_EQ(fit_text(found).find("rubs far more"), std::string::npos);
+  EXPECT_EQ(fit_text(found).find("has far more friction"), std::string::npos);
 }
 
 }  // namespace

@@ -142,7 +142,7 @@ TEST(WatchdogTime, SaysWhyItIsNotKnown) {
     return std::string();
   };
   EXPECT_NE(sentence_of(WatchdogEnd::kStillOn).find("still on 150 ms"), std::string::npos);
-  EXPECT_NE(sentence_of(WatchdogEnd::kAnswersOnly).find("only when spoken to"), std::string::npos);
+  EXPECT_NE(sentence_of(WatchdogEnd::kAnswersOnly).find("only on request"), std::string::npos);
   EXPECT_NE(sentence_of(WatchdogEnd::kTooLong).find("feel-check"), std::string::npos);
   EXPECT_NE(sentence_of(WatchdogEnd::kNoRoom).find("side of the workspace"), std::string::npos);
 }

@@ -118,7 +118,7 @@ TEST(LinkConstants, AreAnArmThatMovesAsTheSeenOne) {
 TEST(LinkConstants, AreRefusedWhereNoLinksAreSo) {
   LinkFit fit = exact_fit(linked_arm(1));
   fit.theta[LinkFit::kInertia] = -1e-3;
-  EXPECT_TRUE(support::refuses(tip_and_links(fit, {0, 0, -1}), "below zero in some pose"));
+  EXPECT_TRUE(support::refuses(tip_and_links(fit, {0, 0, -1}), "negative in some pose"));
   // Unless it is not told from none.
   fit.theta[LinkFit::kInertia] = -1e-6;
   fit.covariance(LinkFit::kInertia, LinkFit::kInertia) = 1e-10;
@@ -167,7 +167,8 @@ TEST(IdentifiedLinks, ImproveTheTwinAtTheWorkspaceEdge) {
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_NEAR(constants.gain[i].value / arm.gain[i], 1, 0.01);
     }
-    EXPECT_NE(constants_table(*found, arm.file).find("Over the workspace"), std::string::npos);
+    EXPECT_NE(constants_table(*found, arm.file).find("Over the part of the workspace"),
+              std::string::npos);
     const auto text = identified_text(phantom_text(), constants, kLinksMark);
     ASSERT_TRUE(text.ok()) << text.error().message;
     const scene::ArmFile with = file_of(*text);
@@ -280,7 +281,7 @@ TEST(IdentifiedLinks, AreNotInventedForAnArmWithout) {
     EXPECT_FALSE(found->constants.links);
     const auto open = not_identified(*found);
     EXPECT_TRUE(std::any_of(open.begin(), open.end(), [](const std::string& one) {
-      return one.find("Links: none seen; over 6 places") == 0;
+      return one.find("Links: none detected; over 6 places") == 0;
     }));
     const double mean = std::cbrt(arm.gain[0] * arm.gain[1] * arm.gain[2]);
     const double mass = arm.file.simulated.plant.mass / mean;

@@ -108,7 +108,7 @@ TEST(IdentifyPlay, SaysDownToWhichWidthThereIsNone) {
     EXPECT_FALSE(found->play.seen) << "arm " << k;
     if (!found->play.fits) continue;
     ++told;
-    EXPECT_TRUE(leaves_open(*found, "Play: none seen above")) << "arm " << k;
+    EXPECT_TRUE(leaves_open(*found, "Backlash: none detected above")) << "arm " << k;
     for (const Estimate& width : found->play.width) {
       most = std::max(most, width.value + width.plus_minus);
     }
@@ -122,7 +122,8 @@ TEST(IdentifyPlay, IsNotBlamedOnLateReportsWhereAMotorOscillates) {
   // Its motor oscillates at 85 Hz under the force that holds the tip.
   const auto found = identified(arm_with_play(6007, kPlay), {.seconds = 18, .seed = 6007});
   ASSERT_FALSE(found.ok());
-  EXPECT_EQ(found.error().message.find("The joints jumped in"), 0U) << found.error().message;
+  EXPECT_EQ(found.error().message.find("The motion cannot be used: in"), 0U)
+      << found.error().message;
 }
 
 TEST(IdentifyPlay, IsWrittenWithItsInterval) {

@@ -73,8 +73,8 @@ TEST(IdentifyRubbing, IsNotInventedWhereTheTipAloneRubs) {
     ASSERT_TRUE(found.ok()) << found.error().message;
     EXPECT_TRUE(found->rubbing.searched);
     EXPECT_FALSE(found->rubbing.seen) << "arm " << k;
-    EXPECT_TRUE(
-        leaves_open(*found, "Dry friction of joints beside that of the tip: none seen above"));
+    EXPECT_TRUE(leaves_open(
+        *found, "Dry friction of joints in addition to that of the tip: none detected above"));
     for (const double below : found->rubbing.coulomb_below) EXPECT_LT(below, 2 * kJointDry);
   }
 }

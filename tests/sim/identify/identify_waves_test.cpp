@@ -187,9 +187,9 @@ TEST(IdentifyWaves, SaysDownToWhichAmplitudeNoneWereSeen) {
     ASSERT_TRUE(none->waves.searched);
     std::string said;
     for (const std::string& sentence : not_identified(*none)) said += sentence + "\n";
-    EXPECT_NE(said.find("Cogging of the motors: none seen; "), std::string::npos) << said;
-    EXPECT_NE(said.find("Ripple of the motors: none seen; "), std::string::npos) << said;
-    EXPECT_NE(said.find("with any of "), std::string::npos) << said;
+    EXPECT_NE(said.find("Cogging of the motors: none detected; "), std::string::npos) << said;
+    EXPECT_NE(said.find("Ripple of the motors: none detected; "), std::string::npos) << said;
+    EXPECT_NE(said.find(" periods per turn would have been detected."), std::string::npos) << said;
     const auto motor = static_cast<std::size_t>(k % 3);
     auto& train = arm.file.simulated.drive_train;
     train.periods_per_turn = 14;
@@ -299,7 +299,7 @@ TEST(IdentifyWaves, ThatWereNotSeenAreNoneInTheNewFile) {
   EXPECT_FALSE(written(found, "").named());
   std::string said;
   for (const std::string& sentence : not_identified(found)) said += sentence;
-  EXPECT_NE(said.find("14, 13, 15 explain it about as well"), std::string::npos) << said;
+  EXPECT_NE(said.find("14, 13, 15 fit about equally well"), std::string::npos) << said;
 }
 
 TEST(IdentifyWaves, StandInTheTableMotorByMotor) {
@@ -308,8 +308,8 @@ TEST(IdentifyWaves, StandInTheTableMotorByMotor) {
   EXPECT_NE(table.find("periods of cogging, ripple         14 "), std::string::npos) << table;
   EXPECT_NE(table.find("cogging of motor 1              0.4 +- 0.02 "), std::string::npos) << table;
   EXPECT_NE(table.find("ripple of motor 3                 3 +- 0.1 "), std::string::npos) << table;
-  EXPECT_NE(table.find("Cogging of the motors: none seen; 0.01 mN m (motor 2), 0.01 mN m (motor 3) "
-                       "with any of 6 to 264 periods in a turn would have been."),
+  EXPECT_NE(table.find("Cogging of the motors: none detected; 0.01 mN m (motor 2), 0.01 mN m "
+                       "(motor 3) with 6 to 264 periods per turn would have been detected."),
             std::string::npos)
       << table;
 }

@@ -185,7 +185,7 @@ const Miswired kMiswired[] = {
        f.wiring.motor_of = {0, 2, 1};
        f.wiring.motor_gain[2] = -1;
      },
-     "they are swapped"},
+     "They are swapped"},
 };
 const char* const kArmFiles[] = {"vintage_phantom", "woodenhaptics", "woodenhaptics_teensy",
                                  "polhem", "falcon"};

@@ -77,17 +77,18 @@ TEST_F(DoctorTest, SaysWhyANodeMayNotBeOpened) {
   plug_woody();
   std::filesystem::remove(usb_.root() / "dev/hidraw3");  // root may open all that exists
   system_.in_plugdev = false;
-  EXPECT_EQ(finding("may not open /dev/hidraw3").health, Health::kProblem);
-  EXPECT_NE(finding("may not open").mend.find("usermod -aG plugdev"), std::string::npos);
+  EXPECT_EQ(finding("have no access to /dev/hidraw3").health, Health::kProblem);
+  EXPECT_NE(finding("have no access to").mend.find("usermod -aG plugdev"), std::string::npos);
   system_.in_plugdev = true;
-  EXPECT_NE(finding("may not open").mend.find("udevadm trigger"), std::string::npos);
+  EXPECT_NE(finding("have no access to").mend.find("udevadm trigger"), std::string::npos);
   std::filesystem::remove(usb_.root() / "etc/udev/rules.d/70-thimble.rules");
-  EXPECT_NE(finding("may not open").what.find("rule is missing"), std::string::npos);
+  EXPECT_NE(finding("have no access to").what.find("rule is missing"), std::string::npos);
 }
 
 TEST_F(DoctorTest, NamesADriverThatIsMissingOrInTheWay) {
   usb_.plug("1-1", "1234", "0006", "WH01", 1, 2);
-  EXPECT_NE(finding("no kernel driver has it").mend.find("modprobe usbhid"), std::string::npos);
+  EXPECT_NE(finding("no kernel driver is bound to it").mend.find("modprobe usbhid"),
+            std::string::npos);
   usb_.plug("1-3", "16c0", "0483", "7654321", 1, 4);
   EXPECT_NE(finding("no serial port").mend.find("modprobe cdc_acm"), std::string::npos);
   plug_falcon();
@@ -108,7 +109,7 @@ TEST_F(DoctorTest, SeesWhatKeepsTheVendorsLibraryFromATouch) {
   EXPECT_FALSE(about("ModemManager"));  // without a Touch it is in nobody's way
   EXPECT_FALSE(about("libncurses"));
   usb_.plug("1-5", "2988", "0302", "T1", 1, 6);
-  EXPECT_NE(finding("ModemManager runs").mend.find("stop ModemManager"), std::string::npos);
+  EXPECT_NE(finding("ModemManager is running").mend.find("stop ModemManager"), std::string::npos);
   EXPECT_NE(finding("libncurses.so.5").mend.find("apt install libncurses5"), std::string::npos);
   usb_.write("usr/lib/x86_64-linux-gnu/libncurses.so.5", "");
   usb_.write("proc/812/comm", "bash\n");
@@ -120,10 +121,11 @@ TEST_F(DoctorTest, SeesPowerSavingAndHubs) {
   plug_woody("1-4.2");
   usb_.write(usb_.device_folder("1-4.2") / "power/control", "auto");
   usb_.plug("1-4", "05e3", "0608", "", 1, 9, "12");
-  EXPECT_NE(finding("to sleep").mend.find("1-4.2/power/control"), std::string::npos);
+  EXPECT_NE(finding("suspend it").mend.find("1-4.2/power/control"), std::string::npos);
   EXPECT_EQ(finding("full-speed hub").health, Health::kAdvice);
   usb_.write(usb_.device_folder("1-4") / "speed", "480");
-  EXPECT_NE(finding("hangs on a hub").mend.find("computer itself"), std::string::npos);
+  EXPECT_NE(finding("connected to a hub").mend.find("directly into the computer"),
+            std::string::npos);
 }
 
 TEST_F(DoctorTest, SeesTheKernelsRealTimeLimits) {
@@ -210,7 +212,7 @@ TEST_F(DoctorTest, SeesAGovernorThatSlowsAProcessorDown) {
 
 TEST_F(DoctorTest, FindsDeepProcessorSleepStates) {
   plug_woody();
-  EXPECT_EQ(finding("take 200 us to wake; you may ask for less").health, Health::kGood);
+  EXPECT_EQ(finding("take 200 us to wake up; a run reduces this").health, Health::kGood);
   std::filesystem::remove(usb_.root() / "dev/cpu_dma_latency");  // root may write all that exists
   EXPECT_EQ(finding("take 200 us to wake").health, Health::kAdvice);
   EXPECT_EQ(troubles(), 1u);
@@ -228,7 +230,7 @@ TEST_F(DoctorTest, PassesOverWhatTheKernelDoesNotTell) {
 }
 
 TEST_F(DoctorTest, SaysSoWhenNothingIsPluggedInOrItsProtocolIsSecret) {
-  EXPECT_EQ(finding("No arm that Thimble knows").health, Health::kAdvice);
+  EXPECT_EQ(finding("No supported arm").health, Health::kAdvice);
   usb_.plug("1-5", "1451", "0402", "FD", 1, 6);
   EXPECT_EQ(finding("not public").health, Health::kAdvice);
   usb_.plug("1-6", "16c0", "0483", "H1", 1, 7);
@@ -241,12 +243,12 @@ TEST(DoctorLog, SaysWhereTheLogIsAndWhetherItCanBeWritten) {
   std::filesystem::create_directories(folder);
   const Finding good = examine_log(folder / "to" / "be" / "made.log");
   EXPECT_EQ(good.health, Health::kGood);
-  EXPECT_EQ(good.what, "What happens is logged to " + (folder / "to/be/made.log").string() + ".");
+  EXPECT_EQ(good.what, "Events are logged to " + (folder / "to/be/made.log").string() + ".");
   EXPECT_FALSE(std::filesystem::exists(folder / "to"));
   const Finding bad = examine_log("/proc/self/log/a.log");  // where nobody makes a folder
   if (geteuid() != 0) {
     EXPECT_EQ(bad.health, Health::kAdvice);
-    EXPECT_EQ(bad.what, "What happens cannot be logged to /proc/self/log/a.log.");
+    EXPECT_EQ(bad.what, "Events cannot be logged to /proc/self/log/a.log.");
   }
 }
 
