@@ -188,7 +188,7 @@ class Examination {
   }
 
   void look_at_access(const FoundArm& arm, const std::string& name) {
-    if (arm.node.empty()) return;  // reported above
+    if (arm.node.empty()) return;  // already reported above
     if (arm.accessible) {
       note(Health::kGood, name + "you have access to " + arm.node + ".");
     } else if (!rule_) {

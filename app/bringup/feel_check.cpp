@@ -61,7 +61,7 @@ class Check {
       return Eigen::Vector3d(0, 0, 0);
     };
     if (!bench_.run(kEncoders_s, watch, stop_)) return false;
-    constexpr std::int32_t kTravelMin = 100;  // counts: some mm at the tip of any arm we know
+    constexpr std::int32_t kTravelMin = 100;  // counts; a few mm at the tip of every supported arm
     std::array<int, 3> travel{};
     for (std::size_t i = 0; i < 3; ++i) travel[i] = most[i] - least[i];
     std::string dead;
@@ -310,7 +310,8 @@ class Check {
       bench_.run(std::max(0.4, 3 * named), watch, stop_, true);
     }
     if (!comes_back) {
-      // Asked before zero is sent, so that only the watchdog can have released the tip.
+      // The question comes before zero is sent, so that only the watchdog can have released the
+      // tip.
       const auto felt = question_ && !stop_.load() ? question_("Has the arm stopped pushing?")
                                                    : std::optional<bool>();
       bench_.device().deactivate();
@@ -365,9 +366,9 @@ class Check {
   const std::atomic<bool>& stop_;
   const Question& question_;
   std::vector<CheckResult> results_;
-  double push_ = kForce;                              // N
-  bool answers_only_ = false;                         // so the silence was not a fault
-  double friction_ = 0;                               // N, min. force that moved the tip
+  double push_ = kForce;       // N
+  bool answers_only_ = false;  // the arm sends only when asked, so silence is not a fault
+  double friction_ = 0;        // N, min. force that moved the tip
   Eigen::Matrix3d moves_ = Eigen::Matrix3d::Zero();   // joint angles, a column for each movement
   Eigen::Matrix3d pushed_ = Eigen::Matrix3d::Zero();  // of the tip, m, a column for each push
 };

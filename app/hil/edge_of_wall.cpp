@@ -21,8 +21,8 @@ constexpr double kSettle = 0.4;        // s
 constexpr double kWatchedLeast = 0.6;  // s
 constexpr double kWindowLeast = 0.1;   // s, at the beginning and at the end
 constexpr double kFar = 0.006;         // m
-constexpr double kEnergyTimes = 10;    // of the kick's
-constexpr double kCountsAtRest = 3;    // counts of flicker at rest
+constexpr double kEnergyTimes = 10;    // max. ratio of the energy from a wall to that of the kick
+constexpr double kCountsAtRest = 3;    // counts; max. flicker of the encoders at rest
 constexpr double kMassUnknown = 0.1;   // kg, if the file names none [chosen]
 
 /// Width of an oscillation: a tip that dry friction holds away from the wall's position has no

@@ -37,7 +37,7 @@ std::string paragraph(const std::string& text, const char* kind = nullptr) {
                      report::html_text(text));
 }
 
-/// A value to the digit that its interval leaves.
+/// Returns a value rounded to the last digit that is significant for its interval.
 std::string rounded(double value, double plus_minus) {
   if (!(plus_minus > 0)) return fmt::format("{:.5g}", value);
   const int digits = std::max(0, 1 - static_cast<int>(std::floor(std::log10(plus_minus))));
@@ -73,7 +73,7 @@ std::string table(const bringup::Identified& found, const scene::ArmFile& file) 
   return text + "</table></div>\n";
 }
 
-/// The masses where the tip was moved, and their range.
+/// Returns the apparent mass at each place of the tip as a table, and their range.
 std::string masses_text(const bringup::LinkFit& fit, const scene::ArmFile& file) {
   std::string text =
       "<div class=\"scroll\"><table><tr><th>place, mm (world)</th><th>along x, g</th><th>along "

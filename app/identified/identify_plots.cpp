@@ -19,13 +19,13 @@ namespace {
 constexpr const char* kSeenInk = "#9aa5b1";
 constexpr const char* kFitInk = "#0072b2";
 constexpr const char* kMarkInk = "#d55e00";
-constexpr int kWidth = 1200;  // pixels
+constexpr int kWidth = 1200;  // pixels, width of a plot
 
 std::string quiet(const char* more) {
   return report::quiet_style() + "set key off\nset tics font ',14'\n" + more;
 }
 
-/// Three panels one below the other, a title at each one's left.
+/// Returns the gnuplot text of three panels on top of each other, with a title on the left of each.
 std::string stacked(const std::string& commands, const std::string& unit,
                     const std::array<std::string, 3>& plots) {
   std::string text = quiet("set tmargin 0.6\nset bmargin 0.6\nset lmargin 11\nset rmargin 2\n") +
@@ -39,7 +39,7 @@ std::string stacked(const std::string& commands, const std::string& unit,
   return text + "unset multiplot\n";
 }
 
-/// Three panels side by side, one for each joint or axis.
+/// Returns the gnuplot text of three panels side by side, one for each joint or axis.
 std::string beside(const std::string& commands, const std::string& x, const std::string& y,
                    const std::array<std::string, 3>& plots,
                    const std::array<const char*, 3>& titles = {"joint 1", "joint 2", "joint 3"}) {
@@ -111,7 +111,7 @@ std::string lines_plot(const bringup::Identified& identified) {
     std::string marks = "unset arrow\nunset label\n";
     if (identified.constants.cables) {
       const bringup::CableConstants& cable = (*identified.constants.cables)[i];
-      // A dip has room above it, a peak below.
+      // The labels use the free room: above a dip, below a peak.
       for (const auto& [at, name, place] :
            {std::tuple{cable.antiresonance.value, "antiresonance", "0.97 right"},
             std::tuple{cable.resonance.value, "resonance", "0.03 left"}}) {

@@ -35,7 +35,7 @@ class WallStarts {
   /// Returns whether the hand comes to rest from more than half of the starts, on walls of about
   /// this stiffness (N/m).
   driver::Result<bool> mostly_rest(double stiffness) const {
-    int more = 0;  // excess of rests over others
+    int more = 0;  // number of starts that rest minus those that do not
     for (int i = 0; i < kTriesMost && std::abs(more) < kClear; ++i) {
       const auto touch = from(i, stiffness);
       if (!touch) return touch.error();

@@ -9,8 +9,9 @@
 namespace thimble::bringup {
 namespace {
 
-constexpr int kSeen = 8;    // constants per mass: all but the stiffness
-constexpr int kWanted = 9;  // mass, three gains, viscous, coulomb, three of the weight
+constexpr int kSeen = 8;  // number of measured constants per mass: all but the stiffness
+// Number of unknowns: mass, three gains, viscous, Coulomb, three components of the weight
+constexpr int kWanted = 9;
 
 using Seen = Eigen::Matrix<double, kSeen, 1>;
 using Wanted = Eigen::Matrix<double, kWanted, 1>;

@@ -21,8 +21,8 @@ constexpr double kCableUnexplainedMost = 0.05;
 constexpr double kSpringLeast = 10;  // N/m
 // Max. share of the pieces of motion that may be omitted because an axis stood still.
 constexpr double kLeftOutMost = 0.75;
-constexpr double kForceLeast = 0.2;   // N [chosen: twice the dry friction of the arms that we know]
-constexpr double kCarriedMost = 0.6;  // of the max. force, to carry a known mass
+constexpr double kForceLeast = 0.2;      // N [chosen: twice the dry friction of the supported arms]
+constexpr double kCarriedMost = 0.6;     // of the max. force, to carry a known mass
 constexpr double kKnownMassMost = 0.06;  // kg [chosen: no grip should be heavier than its arm]
 
 }  // namespace

@@ -242,7 +242,7 @@ bool moves_easily(const scene::ArmFile& file, const Eigen::Vector3d& p_W) {
 }
 
 std::vector<Eigen::Vector3d> places_in(const scene::ArmFile& file, int count) {
-  constexpr double kRoom = 0.02;                // m about a point, in which the arm moves easily
+  constexpr double kRoom = 0.02;  // m, radius around a point in which the arm must move easily
   constexpr double kLeast = 0.3, kStep = 0.05;  // of the distance to a corner
   const auto has_room = [&](const Eigen::Vector3d& p_W) {
     for (const double x : {-kRoom, kRoom}) {
