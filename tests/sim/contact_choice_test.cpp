@@ -11,12 +11,12 @@
 #include "thimble/render/contact_choice.h"
 #include "thimble/render/scene_touch.h"
 
-// The demo's stroke with every way of contact that a scene can name, from the wire up.
+// The demo's stroke with every contact setting of a scene, through the complete chain.
 
 namespace thimble {
 namespace {
 
-/// Opens the demo's scene with a `contact:` section; the error is empty if it could be opened.
+/// Opens the demo's scene with a `contact:` section; the error is empty on success.
 std::unique_ptr<session::Session> open_with(const std::string& contact, std::string& error) {
   return support::open_elephant_text(support::elephant_text(contact), &error);
 }

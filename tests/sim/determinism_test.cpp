@@ -34,15 +34,16 @@ TEST(Determinism, AnotherSeedGivesAnotherRun) {
 
 TEST(Determinism, TheRunIsTheOneThatWasStored) {
   THIMBLE_NEEDS_MESHES();
-  // One hash for every build type: release, sanitizers and debug give the same bits. A change of
-  // the scene, the arm's data or any force shows here; store the new hash only if it was meant. It
-  // holds for any x86-64, for 64-bit ARM (tests/arm64.sh) and any C library: nothing in a run calls
-  // a sine of that one (arch.one_mathematics).
+  // One hash for every build type: release, sanitizers and debug are bit-identical. A change of the
+  // scene, the arm's data or any force changes it; store a new hash only for an intended change. It
+  // is valid for any x86-64, for 64-bit ARM (tests/arm64.sh) and any C library, because a run calls
+  // no functions such as sine from that library (arch.one_mathematics).
   constexpr std::uint64_t kStored = 0xc7a1040f486754b;
   EXPECT_EQ(hash_of_run(1), kStored) << "new hash: 0x" << std::hex << hash_of_run(1);
 }
 
-/// Runs two seconds of a scene that needs no scanned mesh; 0 if it cannot, or touches nothing.
+/// Runs two seconds of a scene without a scanned mesh and returns its hash; 0 on an error or
+/// without contact.
 std::uint64_t hash_of_scene(const std::string& name) {
   session::SessionOptions options;
   options.duration = 2;
@@ -60,8 +61,8 @@ std::uint64_t hash_of_scene(const std::string& name) {
 }
 
 TEST(HardCaseDeterminism, ScenesMatchTheStoredHashes) {
-  // The release build (-O3) and the sanitizers' (-O1) both come here, and a build with -O0 gave the
-  // same, so one hash stands for any build. What was said of kStored above holds of these.
+  // One hash for any build: the release build (-O3), the sanitizers (-O1) and a build with -O0
+  // agree. The conditions of kStored above apply.
   struct Stored {
     const char* scene;
     std::uint64_t hash;

@@ -19,9 +19,9 @@
 #include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
-// Several arms in one run of which some are real: another simulated arm stands for each of those,
-// behind a link that the session takes for a board's. Virtual time, so that no load of the machine
-// matters.
+// Several arms in one run, some of them real. A separate simulated arm represents each real one,
+// behind a link that the session treats as a board. Virtual time makes the test independent of the
+// machine's load.
 
 namespace thimble {
 namespace {
@@ -31,7 +31,7 @@ using Eigen::Vector3d;
 const std::filesystem::path kSource(THIMBLE_SOURCE_DIR);
 const std::atomic<bool> kNobodyStops{false};
 
-/// The link to an arm whose cable can be pulled.
+/// A link to an arm whose cable can be pulled.
 class PulledLink final : public driver::ArmLink {
  public:
   PulledLink(std::unique_ptr<driver::ArmLink> link, const bool& pulled)
@@ -56,7 +56,8 @@ class PulledLink final : public driver::ArmLink {
   const bool& pulled_;
 };
 
-/// Two boards that are simulated apart from the session, and what the user is told and presses.
+/// Two boards that are simulated outside of the session, with the messages to the user and the keys
+/// pressed.
 class MixedArms : public ::testing::Test {
  protected:
   MixedArms() {
@@ -70,7 +71,7 @@ class MixedArms : public ::testing::Test {
                  .ask = [this](const std::string& line) { told_ += line + "\n"; }};
   }
 
-  /// Makes the arm `name` of the scene real: its tip rests by `away` (m) from its home pose.
+  /// Makes the arm `name` of the scene real: its tip rests at `away` (m) from its home pose.
   void make_real(const std::string& name, const Vector3d& away = Vector3d::Zero()) {
     session::RealArmUse use;
     use.arm.kind = driver::ArmKind::kPolhem;
@@ -106,7 +107,8 @@ class MixedArms : public ::testing::Test {
   std::string told_;
   double force_most_ = 4;
   bool pulled_ = false;
-  std::vector<std::unique_ptr<scene::ArmSimulation>> boards_;  // outlive the sessions of a test
+  // They outlive the sessions of a test
+  std::vector<std::unique_ptr<scene::ArmSimulation>> boards_;
 };
 
 TEST_F(MixedArms, ASimulatedHandBesideARealOneBeginsWithTheForces) {
@@ -122,7 +124,7 @@ TEST_F(MixedArms, ASimulatedHandBesideARealOneBeginsWithTheForces) {
   ASSERT_TRUE(session.open_arm());
   EXPECT_EQ(session.device(0).stage(), driver::DeviceStage::kIdle);
   EXPECT_EQ(session.device(1).stage(), driver::DeviceStage::kIdle);
-  // Five seconds in which the real arm is not yet where it should be.
+  // For five seconds the real arm is not yet at its start pose.
   driver::Clock& clock = session.setup().clock();
   for (int tick = 0; tick < 5000; ++tick) {
     clock.sleep_until_ns(clock.now_ns() + 1'000'000);
@@ -159,7 +161,7 @@ TEST_F(MixedArms, ARealOneGetsNoMoreThanItsTerms) {
   EXPECT_GT((*made)->setup().arm_file(0).limits.force_max, 4);
   EXPECT_EQ((*made)->setup().feel_check(1), scene::FeelCheckState::kNone);
   EXPECT_EQ((*made)->setup().feel_check(0), scene::FeelCheckState::kSimulated);
-  // It stands where the scene puts it.
+  // Its base is where the scene puts it.
   EXPECT_NEAR((*made)->setup().arm_file(1).R_WB(0, 0),
               -scene::load_arm("vintage_phantom").value().R_WB(0, 0), 1e-12);
 }
@@ -195,7 +197,7 @@ TEST_F(MixedArms, APulledCableTakesAllForcesOrItsOwn) {
     EXPECT_EQ(session.device(0).f_sent_W().isZero(0), together);
     EXPECT_EQ(told_.find("left: Force is off (other_arm)") != std::string::npos, together) << told_;
     if (!together) continue;
-    // Enter asks for it, and is refused as long as the other is gone.
+    // Enter requests it, and is refused while the other arm is disconnected.
     key_ = session::EnterKey::kPressed;
     watches.step();
     for (int tick = 0; tick < 3; ++tick) ASSERT_FALSE(session.step(kNobodyStops));
@@ -259,7 +261,7 @@ TEST_F(MixedArms, AViewerSeesAndPausesAllOfThem) {
   EXPECT_FALSE((*reader)->newest_of(0, tick));
   EXPECT_FALSE((*reader)->newest_of(2, tick));
   ASSERT_GT(session.device(0).f_sent_W().norm(), 0.3);
-  // Paused, the force of all fades; afterwards it is back.
+  // In a pause the forces of all arms fade; afterwards they return.
   (*reader)->ask_pause(true);
   for (int i = 0; i < 400; ++i) ASSERT_FALSE(session.step(kNobodyStops));
   for (std::size_t arm = 0; arm < 2; ++arm) {

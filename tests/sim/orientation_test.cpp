@@ -11,8 +11,8 @@
 #include "thimble/session/recording.h"
 #include "thimble/session/session.h"
 
-// How the stylus is turned, and each arm's own wire, through the whole way: hand, gimbal, encoders,
-// reports, driver, law, recording.
+// Orientation of the stylus, and each arm's own wire, through the complete chain: hand, gimbal,
+// encoders, reports, driver, law, recording.
 
 namespace thimble {
 namespace {

@@ -18,7 +18,7 @@
 namespace thimble {
 namespace {
 
-/// Writes a scene with a ring in pages, 90 mm wide, and with lines of one's own in it.
+/// Writes a scene with a paged ring, 90 mm wide, and with the given lines in its object.
 std::filesystem::path scene(const std::string& object_lines, const std::string& station) {
   const auto folder = support::scratch_folder();
   if (!std::filesystem::exists(folder / "ring.pages")) {
@@ -60,7 +60,7 @@ TEST(PagedScene, IsTouchedFromTheDiskTheSameInEveryRun) {
     EXPECT_EQ(session.setup().objects().paging()->misses, 0u);
     EXPECT_GE(session.setup().objects().paging()->loads, 4u);
     EXPECT_GT(session.setup().objects().triangles(), 90'000u);
-    // On top of the tube, of 0.0127 m with bumps, and beside where the tip slides off.
+    // On top of the tube of 0.0127 m with bumps, or next to it where the tip slides off.
     for (const auto& row : rows) {
       EXPECT_TRUE(!row.in_contact || std::abs(row.p_WT[2] - 0.0112) < 0.0025) << row.p_WT[2];
     }
@@ -89,7 +89,7 @@ TEST(PagedScene, IsTouchedOnTheWallClockWithALoaderOfItsOwn) {
   session::SessionOptions options;
   options.clock = session::ClockKind::kWall;
   options.duration = 1.2;
-  // A machine may be too busy for the loop; nothing else may end it, and one run comes so far.
+  // A busy machine may end the loop, but nothing else may; one of the runs must get this far.
   bool loaded = false;
   for (int run = 0; run < 20 && !loaded; ++run) {
     const auto opened = session::Session::open(scene("", ""), options);

@@ -48,7 +48,7 @@ TEST(ServoPath, IsWatchedByAGuardThatNoticesOneAllocation) {
   int ticks = 0;
   const auto sloppy = [&](const driver::DeviceState&) noexcept {
     if (++ticks == 50) {
-      int* volatile memory = new int(1);  // volatile: or the compiler leaves the pair out
+      int* volatile memory = new int(1);  // volatile, or the compiler removes the pair
       delete memory;
     }
     return driver::ForceCommand{};

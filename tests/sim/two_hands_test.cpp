@@ -22,7 +22,7 @@
 #include "thimble/session/recording.h"
 #include "thimble/session/session.h"
 
-// Several arms in one run, from the wire up: one beam in two hands.
+// Several arms in one run, through the complete chain: one beam in two hands.
 
 namespace thimble {
 namespace {
@@ -47,7 +47,7 @@ std::unique_ptr<session::Session> open_two_hands(
   return std::move(opened).value();
 }
 
-/// Takes away what else than the hands and gravity acts on the beam.
+/// Removes everything that acts on the beam except the hands and gravity.
 void free_the_beam(scene::Scene& scene) {
   render::MotionChoice& motion = *scene.objects[0].body.motion;
   motion.floor.reset();
@@ -114,7 +114,7 @@ TEST(TwoHands, CompleteRepeatablyWithoutFaultsOrHeap) {
   }
 }
 
-// Lifted evenly, each hand bears its half, and the two forces are each other's mirror image.
+// When the beam is lifted evenly, each hand carries half, and the two forces are mirror images.
 TEST(TwoHands, BearHalfOfTheWeightEach) {
   const auto session = open_two_hands();
   ASSERT_TRUE(session);
@@ -135,7 +135,8 @@ TEST(TwoHands, BearHalfOfTheWeightEach) {
   EXPECT_NEAR(left.y(), -right.y(), 0.05 * half);
 }
 
-// Newton's third law: what the beam gains is what both hands and gravity gave, in every tick.
+// Newton's third law: in every tick the momentum of the beam changes by that from both hands and
+// gravity.
 TEST(TwoHands, KeepTheMomentumAccountOfTheBeam) {
   const auto session = open_two_hands(free_the_beam);
   ASSERT_TRUE(session);
@@ -154,7 +155,7 @@ TEST(TwoHands, KeepTheMomentumAccountOfTheBeam) {
   EXPECT_GT(turned, 1e-6) << "kg m^2/s";
 }
 
-// One hand pulls, the other keeps still: it feels the pull through the beam.
+// One hand pulls and the other is still: it gets the pull through the beam.
 TEST(TwoHands, FeelEachOtherThroughTheBeam) {
   constexpr double kPull = 6e-3;  // m
   const auto pulled_by = [&](double way) {
@@ -222,7 +223,7 @@ TEST(TwoHands, FaultTogetherUnlessTheSceneSaysApart) {
   }
 }
 
-// A fault of the first arm, whose loop comes first in a tick, does the same to the second.
+// A fault of the first arm, whose loop runs first in a tick, also affects the second.
 TEST(TwoHands, LeaveNoForceWhicheverArmFails) {
   const auto session = open_two_hands();
   ASSERT_TRUE(session);
@@ -233,8 +234,9 @@ TEST(TwoHands, LeaveNoForceWhicheverArmFails) {
   EXPECT_EQ(session->simulation(1)->currents(), Vector3d::Zero());
 }
 
-// A caller that looks at one arm alone is told, and so is who asks for what one arm alone has.
-/// Runs the scene with a recording of each arm, and reads them; a fault of one may come on the way.
+// Callers that handle one arm only get an error, and so do requests that need a single arm.
+/// Runs the scene with a recording of each arm, and reads the recordings; one arm may have a fault
+/// during the run.
 std::vector<session::Recording> recorded_hands(scene::FaultRule rule, int fault_at) {
   const std::filesystem::path file = support::scratch_folder() / "hands.h5";
   session::SessionOptions options;
@@ -265,7 +267,8 @@ std::vector<session::Recording> recorded_hands(scene::FaultRule rule, int fault_
   return recordings;
 }
 
-// Each arm has a recording of its own; together they are the run, to the bit, faults and all.
+// Each arm has its own recording; their common replay is bit-identical to the run, including
+// faults.
 TEST(TwoHands, AreReplayedTogetherToTheBit) {
   for (const int fault_at : {-1, 1600}) {
     SCOPED_TRACE(fault_at);
@@ -299,7 +302,7 @@ TEST(TwoHands, AreReplayedOnlyIfAllOfOneRunAreThere) {
   EXPECT_EQ(refusal({recordings[1], recordings[0]}), "replayed") << "in any order";
   recordings[1].ticks.pop_back();
   EXPECT_NE(refusal(recordings).find("not of one run"), std::string::npos);
-  // One hand alone is not what was felt.
+  // A single recording cannot be replayed.
   EXPECT_FALSE(session::replay(recordings[0]));
 }
 

@@ -1,5 +1,5 @@
-// No shipped scene is taken for a broken arm, whoever holds the grip; every shipped arm with
-// reversed motors is.
+// No shipped scene is mistaken for a broken arm, with any hand; every shipped arm with reversed
+// motors is detected.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -57,7 +57,8 @@ INSTANTIATE_TEST_SUITE_P(ByName, WatchedScene,
                                            "water_balloon"),
                          [](const auto& scene) { return std::string(scene.param); });
 
-/// A plate of 800 N/m under a hand that presses at 0.1 m/s, with an arm file and its own motors.
+/// A plate of 800 N/m under a hand that presses at 0.1 m/s, with an arm file and separately set
+/// motors.
 class PressedPlate : public ::testing::TestWithParam<const char*> {
  protected:
   static std::unique_ptr<session::Session> open(bool reversed) {

@@ -9,8 +9,8 @@
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/wire_link.h"
 
-// Every way out ends with the motors off, seen on the far side of the wire: in the simulated arm's
-// currents, not in what the driver believes.
+// Every exit ends with the motors off. The tests check the currents of the simulated arm, not the
+// driver's state.
 
 namespace thimble {
 namespace {
@@ -126,7 +126,7 @@ TEST_F(WaysOut, AnExceptionInTheApplicationTurnsTheMotorsOff) {
 TEST_F(WaysOut, CablePullIsReportedAndMotorsStopIn100ms) {
   EXPECT_EQ(push(0, [this](auto&) { transport_->unplug(); }), driver::ServoEnd::kFault);
   EXPECT_EQ(device_->fault(), driver::Fault::kTransportLost);
-  // The last message came in tick 499; nothing the host does can reach the motors now.
+  // The last message came in tick 499; the host cannot reach the motors any more.
   EXPECT_GT(current(), 0.1);
   arm_->advance_to((499 + 100) * kPeriod_ns - 1);
   EXPECT_GT(current(), 0.1);
@@ -136,7 +136,7 @@ TEST_F(WaysOut, CablePullIsReportedAndMotorsStopIn100ms) {
 }
 
 TEST_F(WaysOut, AHostThatDiesIsTheArmsWatchdogsBusiness) {
-  // What SIGKILL looks like from the arm: no more messages, and no farewell.
+  // From the arm's side, SIGKILL means no more messages, and no final zero.
   push(499, [](auto&) {});
   ASSERT_TRUE(device_->activate());
   for (int k = 0; k < 400; ++k) {

@@ -86,7 +86,7 @@ TEST(IdentifiedFile, NamesMotorsAndCablesThatWereSeen) {
                   "2026-11-23, A 1, +- 2, 2, 2]\n"),
       std::string::npos)
       << *added;
-  // Once there, they are exchanged, whatever form they have.
+  // Existing keys are replaced, whatever their form.
   (*found.cables)[1].stiffness.value = 222;
   const auto again = identified_text(*added, found, mark);
   ASSERT_TRUE(again.ok()) << again.error().message;

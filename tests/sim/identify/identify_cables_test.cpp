@@ -37,7 +37,7 @@ TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
                                         .known_mass = kKnownMass,
                                         .seed = seed});
     if (!found) {
-      // Its motor oscillates under the force that holds the tip: nobody sees such a motion well.
+      // Its motor oscillates under the force that holds the tip, so the motion cannot be measured.
       EXPECT_EQ(found.error().message.find("The motion cannot be used: in"), 0U)
           << found.error().message;
       ++refused;
@@ -107,7 +107,7 @@ TEST(IdentifyCables, FindsOrReportsUnseenResonances) {
 }
 
 TEST(IdentifyCables, AreNotWrittenWhereAHandHoldsTheTip) {
-  // Play is looked for, whose fit has a spring of its own at the tip.
+  // Backlash is searched for; its fit has a separate spring at the tip.
   const int arms = long_form() ? 12 : 1;
   support::Random random(77);
   for (int k = 0; k < arms; ++k) {
@@ -119,7 +119,7 @@ TEST(IdentifyCables, AreNotWrittenWhereAHandHoldsTheTip) {
     hand.mass = random.uniform(0.005, 0.05);
     const auto found = identified(arm, {.seconds = long_form() ? 30.0 : 12.0, .seed = seed}, true);
     if (!found) {
-      // One that holds firmly: joints do not follow their motors.
+      // A firm hand: joints do not follow their motors.
       EXPECT_NE(found.error().message.find("such as a hand"), std::string::npos)
           << found.error().message;
       continue;

@@ -1,5 +1,5 @@
-// Friction of single joints, on the motor's side of cables that stretch: found beside the friction
-// of the tip, with its intervals, and none where there is none.
+// Friction of single joints, on the motor's side of cables that stretch. It is found in addition to
+// the friction of the tip, with intervals, and not reported where there is none.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,11 +26,12 @@ using support::leaves_open;
 using support::long_form;
 using support::Score;
 
-// About which friction of a joint is drawn: 6.3 mN m, 50 mN at the tip, as much as that of the tip
-// itself; of the viscous ten times what the tip has there [chosen].
+// Central values of the drawn friction of a joint. 6.3 mN m is 50 mN at the tip, as much as that of
+// the tip itself; the viscous friction is ten times that of the tip there [chosen].
 constexpr double kRubs = 6.3e-3, kRubsViscous = 1e-3;
 
-/// A vintage PHANTOM behind cables that stretch, whose motors rub by 1/3 to 3 times these.
+/// Returns a vintage PHANTOM behind cables that stretch, whose motors have 1/3 to 3 times this
+/// friction.
 HiddenArm rubbing_arm(std::uint64_t seed) {
   HiddenArm arm = cabled_arm(seed);
   support::Random random(seed + 2000);
@@ -64,7 +65,7 @@ TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
     EXPECT_FALSE(found->play.seen) << "arm " << k;
     const auto& train = arm.file.simulated.drive_train;
     const ArmConstants& constants = found->constants;
-    // Motion alone shows no mass: the gains' mean is taken to be one.
+    // Motion without a known mass does not show the scale, so the mean gain is assumed to be 1.
     const double mean = weighed ? 1 : std::cbrt(arm.gain[0] * arm.gain[1] * arm.gain[2]);
     if (weighed) mass.add(constants.mass, arm.file.simulated.plant.mass);
     tip.add(constants.coulomb, arm.file.simulated.plant.coulomb / mean);
@@ -84,8 +85,8 @@ TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
       }
     }
   }
-  // Of intervals of 95 % one in fifty may miss by more than that as well: an arm whose search ended
-  // beside the truth, which nothing tells (one of 39 does).
+  // One in fifty intervals of 95 % may miss by more than that: an arm whose search ended in a wrong
+  // minimum, which cannot be detected (one of 39 does).
   constexpr double kMissed = 0.02;
   for (const Score* score : {&mass, &tip, &dry, &viscous, &gain, &motor, &stiffness, &resonance}) {
     score->tell();
@@ -133,9 +134,9 @@ TEST(IdentifyJointFriction, IsWrittenWithItsInterval) {
       some->find("    coulomb: [0, 0, 0.00625]  # N m at the joints [I 2026-11-26, sim, +- 0, "
                  "0, 0.0002]"),
       std::string::npos);
-  // The tip's own viscous friction stands there alone.
+  // Only the viscous friction of the tip is written there.
   EXPECT_EQ(some->find("viscous: ["), std::string::npos);
-  // Measured again, without any: the old friction must not stay.
+  // A second measurement without friction must remove the old value.
   (*found.cables)[2].coulomb = {};
   const auto again = identified_text(*some, found, mark);
   ASSERT_TRUE(again.ok()) << again.error().message;
@@ -157,7 +158,7 @@ TEST(IdentifyJointFriction, NamesTheJointOfMostFriction) {
   EXPECT_NE(fit_text(found).find("Joint 2 has far more friction"), std::string::npos)
       << fit_text(found);
   EXPECT_TRUE(leaves_open(found, "Dry friction of a joint by direction: not identified."));
-  // As little as the tip has is nothing to look after.
+  // Friction as small as that of the tip is not reported.
   found.constants.coulomb.value = 0.2;
   EXPECT_EQ(fit_text(found).find("has far more friction"), std::string::npos);
 }

@@ -1,4 +1,4 @@
-// How an arm's reports come, and when its firmware switches the motors off.
+// Timing of an arm's reports, and time of its firmware's watchdog.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ TEST(ReportTiming, IsThatOfTheSimulatedWire) {
       const ReportTiming timing = timed(file);
       SCOPED_TRACE(std::to_string(period_ms) + " ms, " + std::to_string(spread_ms));
       EXPECT_NEAR(timing.period.value, 1e-3 * period_ms, timing.period.plus_minus + 1e-9);
-      // Evenly spread over `spread_ms`.
+      // Uniform over `spread_ms`.
       const double jitter = 1e-3 * spread_ms / std::sqrt(12.0);
       EXPECT_NEAR(timing.jitter.value, jitter, 1.5 * timing.jitter.plus_minus + 1e-9);
       EXPECT_LE(timing.jitter.plus_minus, 0.1 * jitter + 2e-9);
@@ -75,7 +75,7 @@ TEST(WatchdogTime, IsFoundOnAFreeTipByThePushesOfIdentifying) {
       ASSERT_TRUE(found.ok()) << found.error().message;
       ASSERT_TRUE(found->watchdog.has_value());
       if (!found->watchdog->known()) {
-        // Later than the file says, a light arm has gone too far before.
+        // If the watchdog is later than the file says, a light arm has moved too far before.
         EXPECT_EQ(found->watchdog->last.end, WatchdogEnd::kStillOn);
         EXPECT_GT(watchdog_ms, 100);
         continue;
@@ -96,7 +96,8 @@ TEST(WatchdogTime, PushesNoMoreThanItSaysAndNotOutsideTheWorkspace) {
     HiddenArm arm = hidden_arm(seed);
     scene::ArmFile& file = arm.file;
     file.simulated.hand = {};
-    // Beside the side that the first push goes to, or with friction that is not there.
+    // The tip is next to the side towards which the first push goes, or the assumed friction is
+    // wrong.
     Eigen::Vector3d p_W = file.workspace.middle();
     const bool near = seed % 2 == 0;
     if (near) p_W.y() = file.workspace.max_W.y() - random.uniform(0.001, 0.02);
@@ -124,7 +125,7 @@ TEST(WatchdogTime, PushesNoMoreThanItSaysAndNotOutsideTheWorkspace) {
     EXPECT_EQ(outside, 0);
     EXPECT_EQ(found.last.end == WatchdogEnd::kNoRoom, near);
     EXPECT_TRUE((*bench)->device().zero_assured());
-    // It was let go at 15 mm; what it goes on is its own.
+    // It was released at 15 mm; the rest of the motion is without force.
     const Eigen::Vector3d gone = (*bench)->device().state().p_WT - p_W;
     EXPECT_LT(gone.norm(), 0.03);
   }

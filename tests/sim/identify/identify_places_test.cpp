@@ -1,4 +1,4 @@
-// Links of a serial arm, by its motion at several places.
+// Links of a serial arm from its motion at several places.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ using support::linked_arm;
 using support::long_form;
 using support::tip_masses;
 
-/// Fits what `thimble` sees of an arm that moves at several places.
+/// Fits the recorded motions of an arm at several places.
 driver::Result<LinkFit> fitted(const HiddenArm& arm, std::uint64_t seed, double seconds, int places,
                                double force_most = kIdentifyForceMax) {
   const std::atomic<bool> never{false};
@@ -48,8 +48,8 @@ driver::Result<LinkFit> fitted(const HiddenArm& arm, std::uint64_t seed, double 
   return fit_links(std::get<driver::SerialArm>(arm.file.model.geometry), *motions);
 }
 
-/// Adds apparent masses at places that no motion was about, over the whole workspace. `range`: the
-/// least and the most of them.
+/// Adds errors of the apparent mass at places without motion, over the whole workspace. `range`:
+/// min. and max. mass.
 void look_between(const HiddenArm& arm, const LinkFit& found, double scale, std::uint64_t seed,
                   support::Score& score, std::pair<double, double>& range) {
   support::Random random(seed + 900);
@@ -81,8 +81,8 @@ double mean_of_gains(const HiddenArm& arm) {
 TEST(IdentifyPlaces, FindsTheMassOfHiddenArmsWhereTheyHaveNotBeen) {
   support::Score score{"mass", 0.03};
   int held_places = 0, all_places = 0;
-  // The last ones are four times as heavy: up to a kilogram, which 1 N hardly moves, so that the
-  // steps of the encoders count.
+  // The last arms are four times as heavy: up to a kilogram, which 1 N hardly moves, so encoder
+  // steps matter.
   const std::uint64_t first = long_form() ? 7000 : 7021, end = long_form() ? 7040 : 7022;
   for (std::uint64_t seed = first; seed < end; ++seed) {
     SCOPED_TRACE(seed);
@@ -96,7 +96,7 @@ TEST(IdentifyPlaces, FindsTheMassOfHiddenArmsWhereTheyHaveNotBeen) {
     EXPECT_TRUE(found->links) << found->better;
     support::Score one{"mass", 0.03};
     std::pair<double, double> range;
-    // Without a known mass the gains' mean is the scale.
+    // Without a known mass the mean gain sets the scale.
     look_between(arm, *found, 1 / mean_of_gains(arm), seed, one, range);
     EXPECT_GT(range.second, 1.5 * range.first) << "these links change nothing";
     std::printf("%d: %.3g to %.3g kg, worst %.3g, %d of %d, explained %.5f, better %.3g\n",
@@ -105,7 +105,7 @@ TEST(IdentifyPlaces, FindsTheMassOfHiddenArmsWhereTheyHaveNotBeen) {
     score.worst = std::max(score.worst, one.worst);
     score.held += one.held;
     score.all += one.all;
-    // What was seen at each place alone is what the constants say.
+    // The mass measured at each place agrees with the constants.
     EXPECT_EQ(found->places.size(), 7U);
     for (const LinkFit::Place& place : found->places) {
       for (const Estimate& seen : place.seen) {

@@ -1,4 +1,5 @@
-// Play in the cables of hidden arms: found with its interval, and none where there is none.
+// Backlash in the cables of hidden arms is found with its interval, and not reported where there is
+// none.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,8 +23,8 @@ using support::leaves_open;
 using support::long_form;
 using support::Score;
 
-/// A vintage PHANTOM behind cables that stretch, as those of identify_cables_test, with play of 1/3
-/// to 3 times `play` in each joint.
+/// Returns a vintage PHANTOM behind cables that stretch, like those of identify_cables_test, with
+/// backlash of 1/3 to 3 times `play` in each joint.
 HiddenArm arm_with_play(std::uint64_t seed, double play) {
   HiddenArm arm = support::hidden_arm(seed);
   support::Random random(seed + 1000);
@@ -37,8 +38,8 @@ HiddenArm arm_with_play(std::uint64_t seed, double play) {
   return arm;
 }
 
-// Whole width at a joint about which widths are drawn: 3 minutes of arc, what a worn gear of a
-// small drive has, or 0.14 mm at the tip; 5 steps of an encoder [chosen].
+// Central value of the drawn widths, rad at the joint: 3 minutes of arc, as in a worn gear of a
+// small drive. It is 0.14 mm at the tip, or 5 encoder steps [chosen].
 constexpr double kPlay = 1e-3;
 
 TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
@@ -49,7 +50,7 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(6006 + k);
     HiddenArm arm = arm_with_play(seed, kPlay);
-    // Those without play in any joint are looked at in the long form.
+    // Arms without backlash in any joint are tested in the long form.
     if (!long_form()) arm.file.simulated.drive_train.play[0] = 0;
     const bool weighed = long_form() && k % 2 == 0;
     const auto found = identified(arm, {.seconds = long_form() ? 30.0 : 10.0,
@@ -65,7 +66,7 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
     }
     const auto& train = arm.file.simulated.drive_train;
     const ArmConstants& constants = found->constants;
-    // Motion alone shows no mass: the gains' mean is taken to be one.
+    // Motion without a known mass does not show the scale, so the mean gain is assumed to be 1.
     const double mean = weighed ? 1 : std::cbrt(arm.gain[0] * arm.gain[1] * arm.gain[2]);
     const double moved = arm.file.simulated.plant.mass / mean;
     EXPECT_EQ(constants.absolute, weighed);
@@ -140,7 +141,7 @@ TEST(IdentifyPlay, IsWrittenWithItsInterval) {
       some->find("play: [0, 0.00125, 0]  # rad, whole width at the joints [I 2026-11-26, sim, "
                  "+- 0, 2e-05, 0]"),
       std::string::npos);
-  // Measured again, without play: the old width must not stay.
+  // A second measurement without backlash must remove the old width.
   (*found.cables)[1].play = {};
   const auto again = identified_text(*some, found, mark);
   ASSERT_TRUE(again.ok()) << again.error().message;

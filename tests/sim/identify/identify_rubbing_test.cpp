@@ -1,5 +1,5 @@
-// Friction of the joints of a rigid arm: found joint by joint beside that of the tip, with its
-// intervals, none where there is none, and written so that the twin has it.
+// Friction of the joints of a rigid arm. It is found for each joint in addition to that of the tip,
+// with intervals, not reported where there is none, and written to the file of the twin.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ TEST(IdentifyRubbing, IsFoundForEachJointBesideThatOfTheTip) {
   const int arms = long_form() ? 40 : 2;
   Score dry{"dry", 0.05}, viscous{"viscous", 0.10}, gain{"gains", 0.02}, mass{"mass", 0.03};
   Score delay{"delay", 1e-4};
-  // Beside the tip's friction, which turns its sign at much the same time.
+  // Scores of arms whose tip has friction as well, whose sign reverses at about the same time.
   Score dry_beside{"dry*", 0.25}, viscous_beside{"viscous*", 0.3}, tip{"tip*", 3e-3};
   int refused = 0;
   for (int k = 0; k < arms; ++k) {
@@ -79,7 +79,7 @@ TEST(IdentifyRubbing, IsNotInventedWhereTheTipAloneRubs) {
   }
 }
 
-/// An arm whose joints were found to rub.
+/// Returns an identified arm with friction of the joints.
 Identified with_rubbing() {
   Identified found;
   found.constants.mass = {0.08, 0.001};
@@ -109,12 +109,12 @@ TEST(IdentifyRubbing, IsWrittenJointByJointWithItsInterval) {
       << some;
   EXPECT_NE(some.find("    viscous: [0.0002, 0.0004, 0.0006]  # N m s/rad at the joints [I "),
             std::string::npos);
-  // Measured again, without any: the old friction must not stay.
+  // A second measurement without friction must remove the old value.
   found.rubbing = {};
   found.rubbing.searched = true;
   const std::string none = text_with(some, found);
   EXPECT_NE(none.find("    coulomb: [0, 0, 0]  # N m at the joints [I "), std::string::npos);
-  // Cogging beside it stands in the same section.
+  // Cogging is in the same section.
   Identified both = with_rubbing();
   both.waves.searched = true;
   both.waves.periods = 7;

@@ -31,19 +31,19 @@ using support::random_hand;
 using support::Score;
 using support::wide_hidden_arm;
 
-/// Returns what of the torque that it is asked for the weakest motor of an arm gives.
+/// Returns the share of the requested torque that the weakest motor of an arm gives.
 double weakest(const HiddenArm& arm) {
   return *std::min_element(arm.gain.begin(), arm.gain.end());
 }
 
-/// Returns whether an arm's friction is too much for its motors to be told by 0.95 N along all
-/// axes.
+/// Returns whether an arm's friction is too high for its motors to be identified with 0.95 N along
+/// all axes.
 bool is_too_stiff(const HiddenArm& arm) {
   return 6 * arm.file.simulated.plant.coulomb > weakest(arm);
 }
 
-/// Returns whether 0.95 N of an arm's weakest motor carry less than one and a half times the known
-/// mass.
+/// Returns whether 0.95 N from an arm's weakest motor carries less than one and a half times the
+/// known mass.
 bool is_too_weak(const HiddenArm& arm) {
   return 0.95 * weakest(arm) < 1.5 * kKnownMass * scene::kGravity;
 }
@@ -54,8 +54,8 @@ bool is_uneven(const HiddenArm& arm) {
 }
 
 TEST(Identify, FindsConstantsOrReportsTooMuchFriction) {
-  // The method was made with arms 1000 to 1019 in view; these are others. 5012 is a Polhem, whose
-  // strong motors hardly rub beside what it weighs.
+  // The method was developed with arms 1000 to 1019; these are different. 5012 is a Polhem, whose
+  // strong motors have little friction compared with its weight.
   std::vector<std::uint64_t> seeds = {5001, 5002, 5005, 5012};
   for (std::uint64_t k = 0; long_form() && k < 200; ++k) {
     if (k == 0) seeds.clear();
@@ -95,7 +95,7 @@ TEST(Identify, FindsConstantsOrReportsTooMuchFriction) {
       gain.add(constants.gain[i], arm.gain[i]);
       EXPECT_GT(constants.gain[i].value, 0) << "the sign of motor " << i + 1;
     }
-    // What is too weak to be seen must be said by its interval.
+    // The interval of an effect too weak to be measured must contain it.
     viscous_right += std::abs(constants.viscous.value / plant.viscous - 1) < viscous.most ||
                              constants.viscous.holds(plant.viscous)
                          ? 1
@@ -117,12 +117,12 @@ TEST(Identify, FindsConstantsOrReportsTooMuchFriction) {
   }
   EXPECT_LT(refused, 0.5 * arms);
   EXPECT_GE(viscous_right, 0.95 * (arms - refused));
-  // Of the few intervals in the short form all may hold by chance, or one may not.
+  // In the short form there are few intervals, of which one may miss by chance.
   EXPECT_GT(held, (long_form() ? 0.90 : 0.80) * all);
 }
 
 TEST(Identify, SaysThatAHandHoldsTheTip) {
-  // As soft as two fingers that barely touch it, or a firm grip.
+  // From two fingers that barely touch it to a firm grip.
   for (std::uint64_t seed = 1; seed <= (long_form() ? 60 : 2); ++seed) {
     SCOPED_TRACE(seed);
     HiddenArm arm = long_form() && seed % 3 != 2 ? wide_hidden_arm(seed) : hidden_arm(seed);
@@ -156,13 +156,13 @@ TEST(Identify, SeesOnlyRatiosWithoutAKnownMass) {
   EXPECT_NE(constants_table(*found, arm.file).find("--known-mass"), std::string::npos);
 }
 
-/// What is said of a fit: an error, or what speaks against it; empty if nothing is.
+/// Returns the error of a fit or the first reason to distrust it; empty if there is neither.
 std::string said_of(const driver::Result<Identified>& found) {
   if (!found) return found.error().message;
   return found->against.empty() ? "" : found->against.front();
 }
 
-/// What is said of an arm that is another than the model's.
+/// Returns the same for an arm that differs from the model.
 std::string said_of(std::uint64_t seed, const std::function<void(scene::ArmFile&)>& change,
                     bool hold_it = false, bool cables = true, bool play = long_form()) {
   HiddenArm arm = hidden_arm(seed);
@@ -180,8 +180,8 @@ void soften_cables(scene::ArmFile& file) {
   train.damping.setConstant(0.01);
 }
 
-/// Returns whether such an arm is so heavy that its links oscillate below 15 Hz on cables of
-/// 20 N m/rad.
+/// Returns whether the arm is so heavy that its links oscillate below 15 Hz on cables of 20 N
+/// m/rad.
 bool oscillates_below_lines(std::uint64_t seed) {
   return hidden_arm(seed).file.simulated.plant.mass > 0.12;
 }
@@ -201,7 +201,7 @@ TEST(Identify, TellsAWrongModelApart) {
                         file.simulated.drive_train.periods_per_turn = 7;
                       }),
               "");
-    // Beside play the friction of a joint is measured where its cable is seen to stretch.
+    // Friction of a joint is measured like backlash if its cable stretches.
     const auto rub = [&](scene::ArmFile& file) {
       soften_cables(file);
       file.simulated.drive_train.stiffness.setConstant(2000);
@@ -226,7 +226,7 @@ TEST(Identify, TellsAWrongModelApart) {
         true);
     EXPECT_NE(held, "") << "a hand that holds";
     EXPECT_EQ(held.find("pulls against its encoder"), std::string::npos) << "no sign is wrong";
-    // Some jitter is no wrong model: ticks come behind the latest reports.
+    // A little jitter does not make the model wrong: ticks follow the latest reports.
     EXPECT_EQ(said_of(seed, [](scene::ArmFile& file) { file.simulated.wire.jitter_ns = 200'000; }),
               "");
   }
@@ -296,7 +296,7 @@ TEST(Identify, NeverAsksForMoreThanItSaysNorGoesFar) {
   for (std::uint64_t seed = 1; seed <= (long_form() ? 200 : 2); ++seed) {
     HiddenArm arm = hidden_arm(seed);
     for (const double pull : {0.0, arm.file.simulated.plant.coulomb + 0.03, 5.0}) {
-      // Something pulls the tip away, as hard as it may.
+      // Something pulls the tip away with the maximum force.
       scene::ArmFile file = arm.file;
       file.simulated.firmware.wiring.motor_gain.setOnes();
       file.simulated.weight_B = {pull, 0, 0};
@@ -305,7 +305,7 @@ TEST(Identify, NeverAsksForMoreThanItSaysNorGoesFar) {
       const std::atomic<bool> never{false};
       Eigen::Vector3d begin(0, 0, 0);
       int pushed = 0;
-      // Every command, asked for and sent, from the first push of a motor on.
+      // Every force, requested and sent, from the first push of a motor on.
       (*bench)->watch([&](const driver::TickRecord& tick) {
         const Eigen::Vector3d wanted(tick.f_wanted_W.data()), sent(tick.f_sent_W.data());
         const Eigen::Vector3d p_WT(tick.p_WT.data());
@@ -319,7 +319,7 @@ TEST(Identify, NeverAsksForMoreThanItSaysNorGoesFar) {
       const auto motion = record_motion(**bench, file, {.seconds = 10, .seed = seed}, never);
       EXPECT_EQ(motion.ok(), pull == 0) << pull;
       EXPECT_EQ(pushed > 9000, pull == 0) << pushed;
-      // Rounded currents may make a force some mN longer.
+      // Rounded currents may increase a force by a few mN.
       EXPECT_LT((*bench)->true_force_max(), kIdentifyForceMax + 0.01);
       EXPECT_TRUE((*bench)->device().zero_assured());
       if (!motion) continue;

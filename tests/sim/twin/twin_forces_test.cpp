@@ -17,7 +17,8 @@ namespace {
 using support::hidden_arm;
 using support::HiddenArm;
 
-/// The recorded motion of a hidden arm, with its hand if it is held, as `file` understands it.
+/// Returns the recorded motion of a hidden arm, interpreted with `file`; a hand holds the arm if
+/// `hold_it`.
 TwinMotion motion_of(const HiddenArm& arm, bool hold_it) {
   session::Recording recording;
   std::ostringstream text;

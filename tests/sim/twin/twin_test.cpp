@@ -25,7 +25,7 @@ namespace {
 using support::hidden_arm;
 using support::HiddenArm;
 
-/// Returns how many of so many arms are looked at: a sanitizer takes ten times as long for each.
+/// Returns the number of arms to test out of `all`: a sanitizer takes ten times as long for each.
 std::uint64_t arms_of(std::uint64_t all) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return all > 0 ? 1 : 0;
@@ -41,7 +41,7 @@ std::string text_of(const char* arm) {
   return content.str();
 }
 
-/// What `thimble identify --record` writes of an arm.
+/// Returns the recording that `thimble identify --record` writes for an arm.
 session::Recording recording_of(const scene::ArmFile& file, const char* arm, std::uint64_t seed,
                                 double seconds = 10, bool hold_it = false) {
   session::Recording recording;
@@ -87,7 +87,7 @@ TEST(Twin, OfTheSameConstantsRelivesTheMotionToTheEncodersSteps) {
   }
 }
 
-/// A mistake in an arm file, and the constant that it is in.
+/// An error in an arm file, and the key of the wrong constant.
 struct Mistake {
   const char* key;
   std::function<void(scene::ArmFile&)> make;
@@ -111,21 +111,21 @@ const std::vector<Mistake>& mistakes() {
 }
 
 TEST(Twin, NamesTheConstantThatIsWrong) {
-  // The method was made with arms 101 to 120 in view; these are others.
+  // The method was developed with arms 101 to 120; these are different.
   const bool all = support::long_form();
   const std::uint64_t arms = arms_of(all ? 60 : 4);
   for (std::uint64_t seed = 201; seed <= 200 + arms; ++seed) {
     const HiddenArm arm = hidden_arm(seed);
     const auto recording = recording_of(arm.file, "vintage_phantom", seed, 6);
     for (std::size_t m = 0; m < mistakes().size(); ++m) {
-      // Dry friction in the long form alone, and of the motors one for each arm.
+      // Dry friction only in the long form, and only one of the motors for each arm.
       if (!all && (m == 2 || (m > 2 && m < 6 && m != 3 + seed % 3))) continue;
       const Mistake& mistake = mistakes()[m];
       scene::ArmFile wrong = arm.file;
       mistake.make(wrong);
       const TwinComparison found = compared(recording, wrong);
       ASSERT_FALSE(found.remedies.empty());
-      // What the encoders' steps hide is not named, and nothing else is.
+      // An error hidden by encoder steps is not named, and neither is any other constant.
       const bool hidden = all && m == 1 && found.error_rms < 1.01 * found.step_error;
       const bool named = found.has_remedy() && found.remedies.front().key == mistake.key;
       const bool nothing = hidden && !found.has_remedy();
@@ -169,15 +169,15 @@ TEST(Twin, TellsHowManyPercentOfTheMotionItMisses) {
   heavier.simulated.plant.mass *= 1.3;
   const TwinComparison found = compared(recording, heavier);
   for (const TwinAxis& axis : found.axes) {
-    // Nearly all motion is that of a force on a mass: 1 / 1.3 of it is relived.
+    // Nearly all motion is that of a force on a mass, so 1 / 1.3 of it is reproduced.
     EXPECT_NEAR(axis.fit, 100 / 1.3, 6) << axis.name;
   }
   const TwinRemedy& mass = found.remedies.front();
   EXPECT_NEAR(mass.best, arm.file.simulated.plant.mass, 1e-3 * mass.best);
-  // Differences about a value that is 30 % off still foresee most of it.
+  // Differences around a value with an error of 30 % still predict most of it.
   EXPECT_LT(mass.expected, 0.35 * found.error_rms);
   EXPECT_LT(mass.error_rms, 0.1 * found.error_rms);
-  // The excitation has its strongest lines where a hand feels best, none above 100 Hz.
+  // The excitation has its strongest lines where a hand is most sensitive, and none above 100 Hz.
   double low = 0, high = 0;
   for (const TwinSpectrum& line : found.spectrum) {
     (line.frequency < 50 ? low : high) = std::max(line.frequency < 50 ? low : high, line.error[0]);
@@ -213,7 +213,7 @@ TEST(Twin, RelivesAPartOfARecordingWithMissingTicksAndLateReports) {
   auto& ticks = recording.ticks;
   ticks.erase(ticks.begin() + 4000, ticks.begin() + 4007);
   for (std::size_t i = 0; i < ticks.size(); i += 5) {
-    // A report that did not come: the position is the last one's.
+    // A missing report repeats the last position.
     if (i == 0) continue;
     ticks[i].fresh = false;
     ticks[i].q = ticks[i - 1].q;

@@ -10,7 +10,7 @@
 namespace thimble::bringup {
 namespace {
 
-/// A machine on which all is well, with a WoodenHaptics arm; each test breaks one thing.
+/// A correctly configured machine with a WoodenHaptics arm; each test breaks one part of it.
 class DoctorTest : public ::testing::Test {
  protected:
   DoctorTest()
@@ -37,7 +37,7 @@ class DoctorTest : public ::testing::Test {
 
   void plug_falcon() const { usb_.plug("1-2", "0403", "cb48", "F1", 1, 5); }
 
-  /// Finds what the doctor says with these words; fails the test if there is nothing.
+  /// Returns the finding that contains these words; fails the test if there is none.
   Finding finding(const std::string& words) const {
     for (const Finding& found : examine(system_)) {
       if (found.what.find(words) != std::string::npos) return found;
@@ -75,7 +75,7 @@ TEST_F(DoctorTest, MissesTheRule) {
 
 TEST_F(DoctorTest, SaysWhyANodeMayNotBeOpened) {
   plug_woody();
-  std::filesystem::remove(usb_.root() / "dev/hidraw3");  // root may open all that exists
+  std::filesystem::remove(usb_.root() / "dev/hidraw3");  // root has access to every existing file
   system_.in_plugdev = false;
   EXPECT_EQ(finding("have no access to /dev/hidraw3").health, Health::kProblem);
   EXPECT_NE(finding("have no access to").mend.find("usermod -aG plugdev"), std::string::npos);
@@ -106,7 +106,7 @@ TEST_F(DoctorTest, SeesWhatKeepsTheVendorsLibraryFromATouch) {
     });
   };
   usb_.write("proc/812/comm", "ModemManager\n");
-  EXPECT_FALSE(about("ModemManager"));  // without a Touch it is in nobody's way
+  EXPECT_FALSE(about("ModemManager"));  // without a Touch it has no effect
   EXPECT_FALSE(about("libncurses"));
   usb_.plug("1-5", "2988", "0302", "T1", 1, 6);
   EXPECT_NE(finding("ModemManager is running").mend.find("stop ModemManager"), std::string::npos);
@@ -134,7 +134,7 @@ TEST_F(DoctorTest, SeesTheKernelsRealTimeLimits) {
   EXPECT_NE(finding("real-time priority").mend.find("rtprio 80"), std::string::npos);
   usb_.write("proc/sys/kernel/sched_rt_runtime_us", "100000");
   EXPECT_NE(finding("100000 us").mend.find("sysctl"), std::string::npos);
-  usb_.write("proc/sys/kernel/sched_rt_runtime_us", "-1");  // no limit at all is fine
+  usb_.write("proc/sys/kernel/sched_rt_runtime_us", "-1");  // no limit is valid
   EXPECT_EQ(troubles(), 1u);
 }
 
@@ -213,7 +213,8 @@ TEST_F(DoctorTest, SeesAGovernorThatSlowsAProcessorDown) {
 TEST_F(DoctorTest, FindsDeepProcessorSleepStates) {
   plug_woody();
   EXPECT_EQ(finding("take 200 us to wake up; a run reduces this").health, Health::kGood);
-  std::filesystem::remove(usb_.root() / "dev/cpu_dma_latency");  // root may write all that exists
+  std::filesystem::remove(usb_.root() /
+                          "dev/cpu_dma_latency");  // root may write every existing file
   EXPECT_EQ(finding("take 200 us to wake").health, Health::kAdvice);
   EXPECT_EQ(troubles(), 1u);
   usb_.write(kCpus + "cpu0/cpuidle/state1/disable", "1");
@@ -245,7 +246,7 @@ TEST(DoctorLog, SaysWhereTheLogIsAndWhetherItCanBeWritten) {
   EXPECT_EQ(good.health, Health::kGood);
   EXPECT_EQ(good.what, "Events are logged to " + (folder / "to/be/made.log").string() + ".");
   EXPECT_FALSE(std::filesystem::exists(folder / "to"));
-  const Finding bad = examine_log("/proc/self/log/a.log");  // where nobody makes a folder
+  const Finding bad = examine_log("/proc/self/log/a.log");  // no folder can be created there
   if (geteuid() != 0) {
     EXPECT_EQ(bad.health, Health::kAdvice);
     EXPECT_EQ(bad.what, "Events cannot be logged to /proc/self/log/a.log.");

@@ -1,4 +1,5 @@
-// How much force a real arm gets before and after its feel-check, and how long that record holds.
+// Force limit of a real arm before and after its feel check, and validity of the record of that
+// check.
 #include "arm_policy/feel_check_record.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +53,7 @@ TEST_F(RealArmTermsTest, UncheckedArmStaysBelowHalfANewton) {
   EXPECT_EQ(scene::terms_for(arm, {})->feel_check, scene::FeelCheckState::kNone);
 }
 
-/// Asks whether an arm that passed counts as passed after something was done.
+/// Checks whether a passed feel check is still valid after a change.
 class FeelCheckRecordTest : public RealArmTermsTest {
  protected:
   FeelCheckRecordTest() {
@@ -121,7 +122,7 @@ TEST_F(FeelCheckRecordTest, CountsAsNoneOnceAnythingChanges) {
     ASSERT_TRUE(passed(plugged)) << "before " << one.what;
     one.act();
     EXPECT_FALSE(passed(plugged)) << one.what;
-    // Back to what it was.
+    // The original state again.
     plugged = arm_;
     fs::remove_all(record_);
     write(record_, record);

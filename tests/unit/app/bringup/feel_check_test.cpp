@@ -18,11 +18,11 @@ scene::ArmFile shipped(const std::string& name) {
   return std::move(file).value();
 }
 
-/// What a feel check found, and how hard it pushed.
+/// Results of a feel check, and its largest force.
 struct Checked {
   std::vector<CheckResult> results;
-  double force_max = 0;  // N, true at the tip
-  int asked = 0;         // questions
+  double force_max = 0;  // N, true force at the tip
+  int asked = 0;         // number of questions
 
   bool passed() const {
     return results.size() == kFeelChecks &&
@@ -36,7 +36,8 @@ struct Checked {
   }
 };
 
-/// Checks the simulated arm of a file by a hand that does what is asked, and answers what is true.
+/// Runs the feel check of a file's simulated arm, with a hand that follows the prompts and answers
+/// correctly.
 Checked check(const scene::ArmFile& file, bool answers = true) {
   Checked found;
   auto bench =
@@ -56,7 +57,7 @@ Checked check(const scene::ArmFile& file, bool answers = true) {
   return found;
 }
 
-/// Board of a shipped arm file, and how long it waits without a message, s.
+/// Board of a shipped arm file, and the time of its watchdog, s.
 struct Board {
   const char* file;
   double watchdog;
@@ -85,7 +86,8 @@ TEST_P(FeelCheckOfAShippedFile, SeesABoardWithoutWatchdog) {
 }
 
 // mbed boards 0.5 s [S woody-experimental main.cpp, haptikfabrikenapi firmware/main.cpp], boards
-// with text lines 0.1 s [S woodenhaptics firmware]; of the Falcon the guess of its simulation.
+// with text lines 0.1 s [S woodenhaptics firmware]; for the Falcon the assumption of its
+// simulation.
 INSTANTIATE_TEST_SUITE_P(Boards, FeelCheckOfAShippedFile,
                          testing::Values(Board{"woodenhaptics", 0.5}, Board{"polhem", 0.5},
                                          Board{"woodenhaptics_teensy", 0.1},
@@ -116,7 +118,7 @@ TEST(FeelCheck, PassesArmsOfHighDryFriction) {
   }
 }
 
-// 0.49 N less 0.35 N of friction move a tip in a hand by a few steps of the encoders.
+// 0.49 N minus 0.35 N of friction moves a tip in a hand by a few encoder steps.
 TEST(FeelCheck, NamesFrictionThatLeavesLittleOfItsStrongestPush) {
   for (const char* name : {"vintage_phantom", "woodenhaptics", "polhem", "falcon"}) {
     const Checked found = check(rubbing(name, 0.35));

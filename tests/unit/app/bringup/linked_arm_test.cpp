@@ -22,7 +22,7 @@ using driver::FoundArm;
 using support::HaplyGreeting;
 using support::MockHaplyService;
 
-/// This computer, with a service of Haply's.
+/// A computer that runs Haply's service.
 class LinkedArmTest : public RealArmTermsTest {
  protected:
   ~LinkedArmTest() override { unsetenv("THIMBLE_HAPLY_PORT"); }
@@ -32,7 +32,7 @@ class LinkedArmTest : public RealArmTermsTest {
     setenv("THIMBLE_HAPLY_PORT", std::to_string(service_->port()).c_str(), 1);
   }
 
-  /// Returns the arms behind services that are found here.
+  /// Returns the arms that are found behind services.
   static std::vector<FoundArm> linked() {
     auto arms = driver::find_arms();
     std::vector<FoundArm> found;

@@ -1,4 +1,4 @@
-// The lock against sleep, by a program that stands in for systemd-inhibit.
+// The lock against sleep, with a program that replaces systemd-inhibit.
 #include "sleep_lock.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace thimble::scene {
 namespace {
 
-/// Puts a folder with a program of this text in front of all others.
+/// Puts a folder with a program of this text first in the search path.
 class SleepLockTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -46,7 +46,7 @@ class SleepLockTest : public ::testing::Test {
 };
 
 TEST_F(SleepLockTest, IsHeldForAsLongAsItLives) {
-  // As the real one does: options away, the program run, an end when that ends.
+  // Like the real program: skips the options, runs the command, and ends with it.
   stand_in("echo \"$*\" >" + (folder_ / "asked").string() +
            "\nwhile [ \"${1#--}\" != \"$1\" ]; do shift; done\n\"$@\"\necho over >" +
            (folder_ / "over").string() + "\n");

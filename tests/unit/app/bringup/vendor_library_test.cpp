@@ -21,14 +21,14 @@ using driver::BoardKind;
 using driver::Certainty;
 using driver::FoundArm;
 
-/// Names the libraries before anybody looks for them: they are looked for once.
+/// Sets the paths of the libraries before the first search, because there is only one search.
 const bool kNamed = [] {
   setenv("THIMBLE_DHD_LIBRARY", THIMBLE_MOCK_DHD, 1);
   setenv("THIMBLE_HD_LIBRARY", THIMBLE_MOCK_HD, 1);
   return true;
 }();
 
-/// Arms on USB whose makers' libraries are on this computer.
+/// Arms on USB whose vendors' libraries are installed.
 class VendorLibraryTest : public RealArmTermsTest {
  protected:
   VendorLibraryTest()
@@ -46,7 +46,7 @@ class VendorLibraryTest : public RealArmTermsTest {
     return arms && arms->size() == 1 ? arms->front() : FoundArm{};
   }
 
-  /// Opens an arm as a run does, and returns what became of it.
+  /// Opens an arm as a run does; returns the device or the error.
   driver::Result<std::unique_ptr<driver::Device>> open(const FoundArm& arm,
                                                        const std::string& file) {
     auto found = scene::find_real_arm_file(arm, {.arm_file = kArms / (file + ".yaml")});
@@ -69,7 +69,7 @@ TEST_F(VendorLibraryTest, MakesAnArmOfABoardOfForceDimensions) {
   EXPECT_EQ(arm.board, BoardKind::kDhdLibrary);
   EXPECT_EQ(arm.certainty, Certainty::kKnown);
   EXPECT_EQ(arm.software, "libdrd 3.17.5");
-  // The library drives several arms, so the user says which.
+  // The library drives several arms, so the user must name one.
   const auto unnamed = scene::find_real_arm_file(arm);
   ASSERT_FALSE(unnamed);
   EXPECT_TRUE(holds(unnamed.error().message, "--arm NAME (installed are: omega3)"))
@@ -121,7 +121,7 @@ TEST_F(VendorLibraryTest, DoctorExplainsVendorLibraryAccess) {
   usb_.plug("1-2", "2988", "0302", "TT1", 1, 3);
   usb_.add_tty("1-2", 0, "ttyACM0");
   usb_.plug("1-3", "2988", "0304", "TX1", 1, 4);
-  // Whoever is root may open all that is there.
+  // root has access to every existing file.
   std::filesystem::remove(usb_.root() / "dev/bus/usb/001/002");
   std::filesystem::remove(usb_.root() / "dev/ttyACM0");
   SystemInfo system;
@@ -132,7 +132,7 @@ TEST_F(VendorLibraryTest, DoctorExplainsVendorLibraryAccess) {
     }
     return std::string("nobody says: " + words);
   };
-  // Nobody has published what the vendors' set-ups do, and our own rule is not for their arms.
+  // The vendors' set-up steps are not published, and our rule does not cover their arms.
   const std::string touch = mend("TT1: you have no access to /dev/ttyACM0");
   EXPECT_TRUE(holds(touch, "are not published")) << touch;
   EXPECT_TRUE(holds(touch, R"(SUBSYSTEM=="tty", ATTRS{idVendor}=="2988", TAG+="uaccess")"))
