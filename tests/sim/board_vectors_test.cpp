@@ -14,7 +14,7 @@ namespace {
 
 class BoardVectors : public testing::TestWithParam<usb_test::BoardVector> {};
 
-TEST_P(BoardVectors, PutTheTipWhereThePublishedProgramSeesIt) {
+TEST_P(BoardVectors, TipMatchesThePublishedProgram) {
   usb_test::VirtualArm arm;
   arm.name = GetParam().board;
   const auto protocol = arm.protocol();

@@ -55,7 +55,7 @@ TEST(ClayScene, KeepsItsPrints) {
 
 // Triangles split under prints. The saved mesh contains the new triangles, and a repeated run and a
 // replay are bit-identical.
-TEST(ClayTablet, SplitsItsTrianglesSavesThemAndIsReplayedToTheBit) {
+TEST(ClayTablet, SplitTrianglesAreSavedAndReplayed) {
   session::SessionOptions options;
   options.record = support::scratch_folder() / "tablet.h5";
   const auto scene = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/clay_tablet.yaml";
@@ -95,7 +95,7 @@ std::string refusal(const std::string& what, const std::string& body) {
   return session ? "" : session.error().message;
 }
 
-TEST(BodyKeys, TellWhatIsWrongWithABody) {
+TEST(BodyKeys, ErrorsNameTheWrongKey) {
   const std::string ball =
       "mesh: " + std::filesystem::relative(
                      std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/clay_ball.off",
@@ -137,7 +137,7 @@ TEST(BodyKeys, TellWhatIsWrongWithABody) {
       says(refusal(ball + ", contact: {tracker: compact}", "{plastic: {}}"), "edge_planes"));
 }
 
-TEST(TinCanScene, SnapsTwiceAndRollsMeanwhile) {
+TEST(TinCanScene, SnapsTwiceWhileRolling) {
   const auto session = support::open_shipped("tin_can");
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
@@ -152,7 +152,7 @@ TEST(TinCanScene, SnapsTwiceAndRollsMeanwhile) {
 }
 
 // The only energy source is the weight that sinks by less than 3 mm: 0.6 mJ.
-TEST(UndampedScene, GivesTheHandNoMoreThanTheWeightThatSinks) {
+TEST(UndampedScene, EnergyIsBoundedByTheSinkingWeight) {
   const auto session = session::Session::open(
       std::filesystem::path(THIMBLE_TEST_DATA) / "scenes/undamped_drop.yaml", {});
   ASSERT_TRUE(session) << session.error().message;

@@ -23,7 +23,7 @@ std::unique_ptr<session::Session> open_with(const std::string& contact, std::str
 
 class EveryWayOfContact : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(EveryWayOfContact, TouchesTheElephantAndLosesItNever) {
+TEST_P(EveryWayOfContact, TouchesTheElephantWithoutLostContact) {
   THIMBLE_NEEDS_MESHES();
   std::string error;
   const auto session = open_with(GetParam(), error);
@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
                       "tracker: offset, search: tree", "tracker: compact, search: linear",
                       "tracker: compact, search: tree"));
 
-TEST(WayOfContact, ThatDoesNotGoTogetherIsRefusedWithTheReason) {
+TEST(WayOfContact, IncompatibleSettingsAreRefusedWithTheReason) {
   THIMBLE_NEEDS_MESHES();
   std::string error;
   EXPECT_FALSE(open_with("tracker: god_object, blending: phong", error));

@@ -22,17 +22,17 @@ std::uint64_t hash_of_run(std::uint64_t seed) {
   return hash.value();
 }
 
-TEST(Determinism, TheSameSeedGivesTheSameBits) {
+TEST(Determinism, SameSeedIsBitIdentical) {
   THIMBLE_NEEDS_MESHES();
   EXPECT_EQ(hash_of_run(7), hash_of_run(7));
 }
 
-TEST(Determinism, AnotherSeedGivesAnotherRun) {
+TEST(Determinism, DifferentSeedGivesADifferentRun) {
   THIMBLE_NEEDS_MESHES();
   EXPECT_NE(hash_of_run(7), hash_of_run(8));
 }
 
-TEST(Determinism, TheRunIsTheOneThatWasStored) {
+TEST(Determinism, RunMatchesTheStoredHash) {
   THIMBLE_NEEDS_MESHES();
   // One hash for every build type: release, sanitizers and debug are bit-identical. A change of the
   // scene, the arm's data or any force changes it; store a new hash only for an intended change. It
@@ -90,7 +90,7 @@ TEST(HardCaseDeterminism, ScenesMatchTheStoredHashes) {
                             "== runs of other bits than those stored", others, 0, "1");
 }
 
-TEST(Determinism, SteppedTickByTickARunIsTheSame) {
+TEST(Determinism, SteppedRunIsBitIdentical) {
   const auto whole = support::open_shipped("honey");
   const auto stepped = support::open_shipped("honey");
   ASSERT_TRUE(whole && stepped);
@@ -107,7 +107,7 @@ TEST(Determinism, SteppedTickByTickARunIsTheSame) {
   EXPECT_EQ(of_stepped.value(), of_whole.value());
 }
 
-TEST(Determinism, ALawFromOutsideRunsInVirtualTimeAlone) {
+TEST(Determinism, CustomLawNeedsVirtualTime) {
   auto law = [](const driver::DeviceState&) noexcept {
     return driver::ForceCommand{.f_T_W = {0, 0, 0.4}, .touch = {}};
   };
@@ -117,7 +117,7 @@ TEST(Determinism, ALawFromOutsideRunsInVirtualTimeAlone) {
   ASSERT_TRUE(session->set_law(driver::ForceLaw(law)));
   for (int tick = 0; tick < 300; ++tick) session->step(stop);
   EXPECT_EQ(session->ticks().back().f_wanted_W, (std::array<double, 3>{0, 0, 0.4}));
-  EXPECT_FALSE(session->set_law(driver::ForceLaw(law))) << "it has begun";
+  EXPECT_FALSE(session->set_law(driver::ForceLaw(law))) << "the run has started";
 
   session::SessionOptions in_real_time;
   in_real_time.clock = session::ClockKind::kWall;

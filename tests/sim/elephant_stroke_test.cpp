@@ -76,7 +76,7 @@ class ElephantStroke : public ::testing::Test {
 session::Session* ElephantStroke::session_ = nullptr;
 std::vector<render::ContactState> ElephantStroke::found_;
 
-TEST_F(ElephantStroke, TouchesForMostOfItsTimeAndMoreThanOnce) {
+TEST_F(ElephantStroke, IsInContactMostOfTheTimeInSeveralTouches) {
   EXPECT_EQ(rows().size(), 10'000u);
   EXPECT_GT(session_->statistics().contact_time(), 5.0);
   EXPECT_GE(session_->statistics().contacts(), 2u);
@@ -155,7 +155,7 @@ TEST_F(ElephantStroke, KeepsTheTriangleWhoseCellHoldsTheTip) {
   EXPECT_EQ(unexplained, 0u);
 }
 
-TEST_F(ElephantStroke, ChangesDepthByNoMoreThanTheTipMoves) {
+TEST_F(ElephantStroke, DepthChangesAreBoundedByTheMotion) {
   // Unfiltered contact: |d depth| <= |d p| within a triangle and over one edge, where the depth is
   // continuous [BP 4b]. At a vertex the paper's cells overlap or leave gaps. The walk then crosses
   // several edges in one tick, and the depth jumps to that of the closest face. Such ticks are few.
@@ -182,7 +182,7 @@ TEST_F(ElephantStroke, ChangesDepthByNoMoreThanTheTipMoves) {
   EXPECT_LT(worst, 0.25e-3);
 }
 
-TEST_F(ElephantStroke, FeelsWhatWasFoundButJustBehindTheEdges) {
+TEST_F(ElephantStroke, FilteredContactDiffersOnlyBehindEdges) {
   // The normal changes at an edge, and the filtered direction follows over some path behind it.
   // Until then depth and normal differ from those of the face.
   std::size_t touching = 0, behind = 0;
@@ -257,7 +257,7 @@ double excess_over_the_path(std::span<const driver::TickRecord> rows,
   return worst;
 }
 
-TEST_F(ElephantStroke, JumpsInForceByNoMoreThanThePathImplies) {
+TEST_F(ElephantStroke, ForceChangesAreBoundedByThePath) {
   EXPECT_LT(excess_over_the_path(rows(), session_->scene().objects.front()), 1e-10);
 }
 

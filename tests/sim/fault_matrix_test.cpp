@@ -124,7 +124,7 @@ void check_opening(const TestedFault& fault, const TestedArm& arm) {
   }
   std::string what = "refused";
   if (!opened) {
-    EXPECT_GT(opened.error().message.size(), 20U) << "a refusal tells what to do";
+    EXPECT_GT(opened.error().message.size(), 20U) << "the error must give a remedy";
   } else {
     const Seen seen = watch(
         rig,
@@ -132,7 +132,7 @@ void check_opening(const TestedFault& fault, const TestedArm& arm) {
     EXPECT_FALSE(seen.named_late);
     what = "opened, " + measured(seen);
     if (fault.name == "stall out") {
-      EXPECT_NE(seen.cause, driver::Fault::kNone) << "it was there from the start";
+      EXPECT_NE(seen.cause, driver::Fault::kNone) << "the fault existed from the start";
     }
   }
   EXPECT_TRUE(rig.within_limit());
@@ -144,7 +144,7 @@ void check_opening(const TestedFault& fault, const TestedArm& arm) {
   const auto again = rig.open();
   ASSERT_TRUE(again) << again.error().message;
   for (int i = 0; i < 30; ++i) rig.tick();
-  EXPECT_EQ(rig.device().fault(), driver::Fault::kNone) << "after it was mended";
+  EXPECT_EQ(rig.device().fault(), driver::Fault::kNone) << "after the repair";
 }
 
 void check_touch(const TestedFault& fault, const TestedArm& arm, Phase phase) {
@@ -156,15 +156,15 @@ void check_touch(const TestedFault& fault, const TestedArm& arm, Phase phase) {
   for (int i = 0; i < kBefore; ++i) rig.tick();
   if (fault.place != Place::kWiring) {
     ASSERT_EQ(rig.device().fault(), driver::Fault::kNone);
-    ASSERT_EQ(rig.depth() > 0, phase != Phase::kFree) << "the phase is not what it should be";
+    ASSERT_EQ(rig.depth() > 0, phase != Phase::kFree) << "wrong phase";
     ASSERT_EQ(rig.motors() > 0, phase != Phase::kFree);
   }
   const Promised promise = promised(fault.name, arm.kind, phase, watchdog_of(arm));
   const Seen seen = watch(rig, fault, promise.ticks);
 
   EXPECT_TRUE(rig.within_limit());
-  EXPECT_FALSE(seen.named_late) << "a force went out after its cause was named";
-  EXPECT_TRUE(seen.told) << "the arm took no zero, and nobody was told";
+  EXPECT_FALSE(seen.named_late) << "a force was sent after the cause was reported";
+  EXPECT_TRUE(seen.told) << "the arm did not accept zero force, and this was not reported";
   if (promise.promise == Promise::kOff || promise.promise == Promise::kArmOff) {
     EXPECT_GE(seen.off_after, 0) << "the motors still pull";
     EXPECT_LE(seen.off_after, promise.ticks);
@@ -182,14 +182,14 @@ void check_touch(const TestedFault& fault, const TestedArm& arm, Phase phase) {
     EXPECT_EQ(!rig.device().activate(), counts_from_elsewhere);
   }
   if (recording) {
-    EXPECT_EQ(rig.recorded(), rig.ticks()) << "ticks are missing";
+    EXPECT_EQ(rig.recorded(), rig.ticks()) << "ticks are missing from the recording";
   }
   note(fault, arm, phase, promise, measured(seen));
 }
 
 class FaultMatrix : public testing::TestWithParam<TestedArm> {};
 
-TEST_P(FaultMatrix, KeepsWhatIsPromisedInEveryPhase) {
+TEST_P(FaultMatrix, PromisesHoldInEveryPhase) {
   support::Covered("arms").add(GetParam().file);
   for (const TestedFault& fault : kTestedFaults) {
     for (std::size_t phase = 0; phase < kPhaseNames.size(); ++phase) {

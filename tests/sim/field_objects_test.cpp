@@ -137,7 +137,7 @@ TEST(HalfSpaceFromTheWireUp, ReturnsTheEnergyOfTheLaw) {
   }
 }
 
-TEST(FunctionField, ThatReturnsNaNLatchesAFaultWithZeroForce) {
+TEST(FunctionField, NaNLatchesAFaultWithZeroForce) {
   FreeArm arm(1'000'000);
   bool broken = false;
   const auto law = [&broken](const driver::DeviceState&) noexcept -> Vector3d {

@@ -123,7 +123,7 @@ TEST(HardCaseRiseLimit, SaturatingGateReturnsNoSpeed) {
       }
       EXPECT_LE(most, 8.5 + 1e-9);
       if (speed >= 1) {
-        EXPECT_NEAR(most, 8.5, 1e-9) << name << ": the limits were not reached";
+        EXPECT_NEAR(most, 8.5, 1e-9) << name << ": the test did not reach the limits";
       }
     }
   }

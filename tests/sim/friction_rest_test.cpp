@@ -62,7 +62,7 @@ Rest rest_after_stop(render::AnyStage& stage, const FrictionRigSettings& rig, do
           .held = std::abs(mean(raw.last(1000)))};
 }
 
-TEST(NaiveFriction, HasALimitCycleAfterAStopAsThePaperSays) {
+TEST(NaiveFriction, HasTheLimitCycleOfThePaperAfterAStop) {
   const FrictionRigSettings rig;
   const auto hold = friction("naive", rig, {{"at_rest", "hold"}});
   const Rest rest = rest_after_stop(*hold, rig, 0.01);
@@ -71,7 +71,7 @@ TEST(NaiveFriction, HasALimitCycleAfterAStopAsThePaperSays) {
   EXPECT_NEAR(rest.sign_changes / 2, 92, 0.2 * 92);
 }
 
-TEST(NaiveFriction, MovesTheHandNoMoreOnceTheEncodersAreIdeal) {
+TEST(NaiveFriction, HandIsStillWithIdealEncoders) {
   FrictionRigSettings rig;
   rig.encoder_step = 0;
   const auto hold = friction("naive", rig, {{"at_rest", "hold"}});

@@ -61,7 +61,7 @@ TEST(SceneWithFriction, EveryFrictionRunsWithoutAllocation) {
   }
 }
 
-TEST(SceneWithFriction, IsToldWhatTheArmCannotKeepQuiet) {
+TEST(SceneWithFriction, SettingsThatOscillateAreRefused) {
   THIMBLE_NEEDS_MESHES();
   session::SessionOptions options;
   options.mesh_folder = THIMBLE_MESHES;

@@ -157,7 +157,7 @@ TEST(HandConstants, EveryHandRestsOnEveryShippedWall) {
                             "<= RMS of the force at rest", 1e3 * most, 20, "mN");
 }
 
-TEST(HandConstants, EveryHandRestsOnWhatTuneCallsSafe) {
+TEST(HandConstants, EveryHandRestsOnTunedWalls) {
   double most = 0;
   for (const char* const name : {"vintage_phantom", "woodenhaptics", "polhem"}) {
     const auto arm =

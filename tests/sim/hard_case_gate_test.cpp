@@ -142,7 +142,7 @@ std::vector<double> bounces_with(Booking booking) {
   });
 }
 
-TEST(HardCaseController, GuardBookingTheAskedForceCreeps) {
+TEST(HardCaseController, GuardBookingTheRequestedForceCreeps) {
   // A wall that must not stick clamps the damping on the way out; an account of the requested force
   // counts it as dissipated.
   const auto good = bounces_with(Booking::kSent), bad = bounces_with(Booking::kDemanded);

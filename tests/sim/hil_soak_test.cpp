@@ -50,7 +50,7 @@ std::string missed(const HilResult& result) {
   return names;
 }
 
-TEST(HilSoak, PassesMotorsThatWarmAsTheirFileSays) {
+TEST(HilSoak, PassesMotorsThatWarmAsInTheirFile) {
   // The short form is three time constants of motors that warm quickly; the long one an hour.
   const scene::ArmFile file = support::long_form() ? warm_arm(kCurrent, 60) : warm_arm(kCurrent, 6);
   const HilResult soak = soak_of(file, file, support::long_form() ? 60 : 0.3);
@@ -68,7 +68,7 @@ TEST(HilSoak, PassesMotorsThatWarmAsTheirFileSays) {
   EXPECT_NE(soak.text.find("never warmer than that"), std::string::npos) << soak.text;
 }
 
-TEST(HilSoak, FindsMotorsThatHeatMoreThanTheirFileSays) {
+TEST(HilSoak, FindsMotorsThatHeatMoreThanInTheirFile) {
   for (const double times : {1.2, 1.5, 2.0}) {
     scene::ArmFile file = warm_arm(kCurrent, 60);
     // Cold copper has a quarter less resistance than at its limit, which hides an error of a fifth.
@@ -100,7 +100,7 @@ TEST(HilSoak, FindsMotorsThatWereWarmBefore) {
   EXPECT_EQ(missed(soak_of(file, arm, 0.1)), "winding_of_thought");
 }
 
-TEST(HilSoak, SeesHeatLowerTheForceAndNeverPassTheLimit) {
+TEST(HilSoak, HeatReducesTheForceAndStaysWithinTheLimit) {
   // Motors that are far too weak for this motion.
   const scene::ArmFile file = warm_arm(0.06, 3);
   const HilResult soak = soak_of(file, file, 0.3);
@@ -114,7 +114,7 @@ TEST(HilSoak, SeesHeatLowerTheForceAndNeverPassTheLimit) {
       << soak.text;
 }
 
-TEST(HilSoak, SaysWhatCannotBeKnownOfAnArm) {
+TEST(HilSoak, ReportsWhatCannotBeDetermined) {
   scene::ArmFile file = scene::load_arm("vintage_phantom").value();
   const HilResult cold = soak_of(file, file, 0.1);
   EXPECT_EQ(cold.outcome, HilOutcome::kPassed) << cold.text;

@@ -62,7 +62,7 @@ std::string failed(const std::map<std::string, HilResult>& results) {
   return names;
 }
 
-TEST(Hil, PassesAnArmThatIsAsItsFileSays) {
+TEST(Hil, PassesAnArmThatMatchesItsFile) {
   for (const char* name : {"vintage_phantom", "woodenhaptics_teensy", "polhem"}) {
     SCOPED_TRACE(name);
     Bench bench(name);
@@ -82,7 +82,7 @@ TEST(Hil, PassesAnArmThatIsAsItsFileSays) {
   }
 }
 
-TEST(Hil, KnowsLinksThatTheFileNames) {
+TEST(Hil, AccountsForLinksOfTheFile) {
   const auto name_links = [](scene::ArmFile& file, double more) {
     auto& links = file.simulated.links;
     links.inertia = more * Eigen::Vector3d(4e-4, 5e-4, 3e-4);
@@ -101,7 +101,7 @@ TEST(Hil, KnowsLinksThatTheFileNames) {
     const HilResult result = check_constants(rig, {});
     EXPECT_EQ(result.outcome, more == 1 ? HilOutcome::kPassed : HilOutcome::kFailed) << result.text;
     EXPECT_LT(figure_value(result.figures, "dry_friction_difference"), 1) << result.text;
-    EXPECT_EQ(figure_value(result.figures, "mass_difference"), -1) << "a mass in one place";
+    EXPECT_EQ(figure_value(result.figures, "mass_difference"), -1) << "mass at one place";
     EXPECT_EQ(figure_value(result.figures, "mass_x_difference") <= 1, more == 1);
   }
 }
@@ -114,7 +114,7 @@ std::string failed_with(const std::function<void(scene::ArmFile&)>& change, doub
   return failed(bench.results());
 }
 
-TEST(Hil, NamesWhatIsWrongWithAnArm) {
+TEST(Hil, NamesTheWrongProperty) {
   EXPECT_EQ(failed_with([](scene::ArmFile& arm) { arm.simulated.wire.delay_out_ns += 1'500'000; }),
             "constants stiffest_wall");
   EXPECT_EQ(failed_with([](scene::ArmFile& arm) { arm.simulated.wire.loss = 0.1; }),
@@ -155,7 +155,7 @@ EdgeOfWall edge_with(double delay_ms, const EdgeSearch& search, double& ratio,
   return *found;
 }
 
-TEST(Hil, FindsTheWallThatTheLawSays) {
+TEST(Hil, FindsTheWallOfTheLaw) {
   const EdgeSearch search{.factor = 1.02, .starts = 9};
   for (const double delay_ms : {0.0, 1.0, 2.0, 4.0}) {
     double ratio = 0;
@@ -170,14 +170,14 @@ TEST(Hil, FindsTheWallThatTheLawSays) {
   }
 }
 
-TEST(Hil, SeesASwingGrowThatGivesLittleEnergy) {
+TEST(Hil, DetectsGrowthWithLittleEnergy) {
   double ratio = 0;
   const EdgeOfWall edge = edge_with(1, {.first = 30, .starts = 9}, ratio, 0.004);
   EXPECT_TRUE(edge.grew);
   EXPECT_NEAR(ratio, 1, 0.25);
 }
 
-TEST(Hil, TakesAWallOffThatGivesEnergy) {
+TEST(Hil, RemovesAWallThatAddsEnergy) {
   // Ten times the kick's energy, plus the energy of one tick.
   const double kick = 0.5 * 0.075 * 0.03 * 0.03;  // J
   double ratio = 0;
@@ -255,7 +255,7 @@ TEST(Hil, JudgesTheStiffestWallToATenth) {
   }
 }
 
-TEST(Hil, HoldsTheTrueMedianInNineteenOfTwentyIntervals) {
+TEST(Hil, IntervalsContainTheTrueMedian) {
   std::mt19937 draw(static_cast<std::uint32_t>(support::seed_of(5)));
   for (const int count : {kMedianLeast, 9, 33, 65}) {
     const int tries = 4000;
@@ -299,7 +299,7 @@ TEST(Hil, MeasuresTheWatchdogOfAFreeArm) {
   }
 }
 
-TEST(Hil, PushesNothingBeforeTheFeelCheckIsPassed) {
+TEST(Hil, AppliesNoForceBeforeTheFeelCheck) {
   Bench bench("vintage_phantom");
   bench.attended = false;
   bench.options.checked = false;
@@ -311,7 +311,7 @@ TEST(Hil, PushesNothingBeforeTheFeelCheckIsPassed) {
   }
 }
 
-TEST(Hil, PushesNoFurtherAgainstAMotorThatIsTurnedRound) {
+TEST(Hil, StopsPushingAgainstAReversedMotor) {
   for (int motor = 0; motor < 3; ++motor) {
     Bench bench("vintage_phantom");
     bench.attended = false;

@@ -131,7 +131,7 @@ Rest rest_in(const support::Hollow& hollow, const Pressed& pressed) {
           .mean = mean.norm()};
 }
 
-TEST(HollowRest, OfEveryTrackerInAGrooveOf59Degrees) {
+TEST(HollowRest, EveryTrackerRestsInAGrooveOf59Degrees) {
   const double slope = std::atan2(0.017, 0.03), wall = std::hypot(0.017, 0.03);
   const support::Hollow hollow = support::groove(slope, slope, wall, wall, {-0.03, 0.03});
   for (const char* contact : kContacts) {
@@ -146,7 +146,7 @@ TEST(HollowRest, OfEveryTrackerInAGrooveOf59Degrees) {
   }
 }
 
-TEST(HollowRest, OfEveryTrackerInRandomGroovesAndPits) {
+TEST(HollowRest, EveryTrackerRestsInRandomGroovesAndPits) {
   const int count = support::long_form() ? 1000 : 40;
   std::array<int, kContacts.size()> loud{}, off{};
   std::array<double, kContacts.size()> most{};

@@ -154,9 +154,9 @@ Turned turn(const std::filesystem::path& scene_file, const std::string& knob_nam
   return turned;
 }
 
-TEST(LiveKnobs, NeverStepTheForceWhileTheyAreTurnedFromEndToEnd) {
+TEST(LiveKnobs, ForceHasNoStepsWhileAKnobTurns) {
 #if defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "no threads meet in it";
+  GTEST_SKIP() << "this test uses no threads";
 #endif
   const double most = session::LiveKnobs::kForceRate * 1e-3;  // N in a tick of 1 kHz
   const std::filesystem::path rubber = rubber_that_does_not_jump();
@@ -170,9 +170,9 @@ TEST(LiveKnobs, NeverStepTheForceWhileTheyAreTurnedFromEndToEnd) {
     SCOPED_TRACE(scene.stem().string() + ", " + knob);
     const Turned turned = turn(scene, knob);
     EXPECT_LE(turned.largest_step, most);
-    EXPECT_GT(turned.felt, 0.1) << "it was not felt at all";
-    EXPECT_GT(turned.range, 0.9) << "it was not turned from end to end";
-    std::printf("%s, %s: %.4f N in a tick at most by turning it (allowed %.3f)\n",
+    EXPECT_GT(turned.felt, 0.1) << "the knob had no effect on the force";
+    EXPECT_GT(turned.range, 0.9) << "the knob did not cover its range";
+    std::printf("%s, %s: at most %.4f N in a tick due to the knob (allowed %.3f)\n",
                 scene.stem().c_str(), knob, turned.largest_step, most);
   }
 }
@@ -182,9 +182,9 @@ class KnobsOfScene : public ::testing::TestWithParam<std::string> {};
 // Bodies that move or dent change their depth faster than in the last tick. If static friction is
 // higher than sliding friction, a knob makes the tip slip a tick earlier or later: that step
 // belongs to the law.
-TEST_P(KnobsOfScene, ChangeTheForceByNoMoreThanIsStated) {
+TEST_P(KnobsOfScene, ForceChangesStayWithinTheStatedLimit) {
 #if defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "no threads meet in it";
+  GTEST_SKIP() << "this test uses no threads";
 #endif
   if (GetParam() == "elephant") THIMBLE_NEEDS_MESHES();
   const bool slips = GetParam() == "rubber" || GetParam() == "tin_can";
@@ -211,7 +211,7 @@ TEST_P(KnobsOfScene, ChangeTheForceByNoMoreThanIsStated) {
 INSTANTIATE_TEST_SUITE_P(ByName, KnobsOfScene, ::testing::ValuesIn(support::scenes_of_one_arm()),
                          [](const auto& scene) { return scene.param; });
 
-TEST(LiveKnobs, TurnWithoutTheHeapAndEndOnTheValueThatIsWanted) {
+TEST(LiveKnobs, ReachTheirTargetWithoutHeap) {
   SessionOptions options;
   options.share = true;
   const auto session = open(shipped("rubber"), options);
@@ -229,7 +229,7 @@ TEST(LiveKnobs, TurnWithoutTheHeapAndEndOnTheValueThatIsWanted) {
   EXPECT_EQ(reader->knob(0), 123);
 }
 
-TEST(HeldKnobs, TurnWithoutTheHeapAndEndOnTheValueThatIsWanted) {
+TEST(HeldKnobs, ReachTheirTargetWithoutHeap) {
   SessionOptions options;
   const auto plain = open(shipped("rubber"), options);
   EXPECT_TRUE(plain->knobs().empty());
@@ -256,9 +256,9 @@ TEST(HeldKnobs, TurnWithoutTheHeapAndEndOnTheValueThatIsWanted) {
   EXPECT_EQ(session->knobs()[0].value, 200);
 }
 
-TEST(LiveKnobs, LeaveTheLoopStableAtBothEndsOfEveryKnob) {
+TEST(LiveKnobs, LoopIsStableAtBothEndsOfEveryKnob) {
 #if defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "no threads meet in it";
+  GTEST_SKIP() << "this test uses no threads";
 #endif
   std::vector<std::string> scenes{"rubber", "sandpaper", "honey"};
   if (support::long_form()) {
@@ -286,7 +286,7 @@ TEST(LiveKnobs, LeaveTheLoopStableAtBothEndsOfEveryKnob) {
   }
 }
 
-TEST(LiveControl, AViewerThatOnlyWatchesChangesNoBitOfTheRun) {
+TEST(LiveControl, PassiveViewerLeavesTheRunBitIdentical) {
   for (const char* name : {"rubber", "clay", "floating_block", "water_balloon"}) {
     SCOPED_TRACE(name);
     SessionOptions options;
@@ -328,7 +328,7 @@ TEST(LiveControl, ShowsShapedAndMovedObjectsWhereTheyAre) {
   render::TriangleMesh seen_shape = clay->setup().objects().mesh_W(0);
   const auto first = seen_shape.vertices;
   reader->shape(0, seen_shape);
-  EXPECT_NE(seen_shape.vertices, first) << "it left a print";
+  EXPECT_NE(seen_shape.vertices, first) << "the ball must have a print";
   EXPECT_EQ(seen_shape.vertices, clay->mesh_now().vertices);
 
   // A shape that splits its triangles, read every 50 ticks, and only at the end.
@@ -365,7 +365,7 @@ TEST(LiveControl, ShowsShapedAndMovedObjectsWhereTheyAre) {
   EXPECT_EQ(seen.pose[0].p_WB, real.pose[0].p_WB);
 }
 
-TEST(LiveControl, APauseInVirtualTimeChangesNoBit) {
+TEST(LiveControl, VirtualPauseLeavesTheRunBitIdentical) {
   SessionOptions options;
   options.duration = 2;
   const auto alone = open(shipped("rubber"), options);
@@ -380,7 +380,7 @@ TEST(LiveControl, APauseInVirtualTimeChangesNoBit) {
   }
   const std::uint64_t ticks = reader->counters().ticks;
   std::this_thread::sleep_for(std::chrono::milliseconds(30));
-  EXPECT_EQ(reader->counters().ticks, ticks) << "it stands still";
+  EXPECT_EQ(reader->counters().ticks, ticks) << "no ticks during a pause";
   EXPECT_LT(ticks, 2000u);
   reader->ask_pause(false);
   servo.join();
@@ -388,7 +388,7 @@ TEST(LiveControl, APauseInVirtualTimeChangesNoBit) {
 }
 
 /// Moves the hand in virtual time to a point over the ball and then into it.
-TEST(LiveControl, AHandThatTheMouseLeadsFeelsTheScene) {
+TEST(LiveControl, MouseHandTouchesTheScene) {
   SessionOptions options;
   options.share = true;
   options.hand_by_mouse = true;
@@ -408,7 +408,7 @@ TEST(LiveControl, AHandThatTheMouseLeadsFeelsTheScene) {
   EXPECT_EQ(end.tick, 1499u);
   EXPECT_TRUE(end.in_contact);
   EXPECT_GT(force, 0.5);
-  EXPECT_LT(fastest, 1.5 * device_sim::Hand::kSpeedMax) << "an arm on a hand overshoots a little";
+  EXPECT_LT(fastest, 1.5 * device_sim::Hand::kSpeedMax) << "an arm in a hand overshoots slightly";
 }
 
 TEST(LiveControl, KeepsTheHandWithinTheWorkspace) {
@@ -429,7 +429,7 @@ TEST(LiveControl, KeepsTheHandWithinTheWorkspace) {
   EXPECT_EQ(session->device().fault(), driver::Fault::kNone);
 }
 
-TEST(LiveControl, APauseFadesTheForceOutAndInWithoutAStep) {
+TEST(LiveControl, PauseFadesTheForceWithoutSteps) {
   SessionOptions options;
   options.share = true;
   const auto session = open(shipped("rubber"), options);
@@ -470,7 +470,7 @@ TEST(LiveControl, APauseFadesTheForceOutAndInWithoutAStep) {
 }
 
 // The other arms fade with the pause of the first one.
-TEST(LiveControl, PauseIsLedByAnArmInFaultAsWell) {
+TEST(LiveControl, ArmInFaultStillLeadsThePause) {
   SessionOptions options;
   options.share = true;
   const auto session = open(shipped("rubber"), options);
@@ -522,13 +522,13 @@ TEST(LiveControl, RealTimePauseHoldsTheHandWithoutForce) {
     EXPECT_EQ(force(), 0);
     driver::TickRecord held;
     EXPECT_TRUE(reader->newest(held));
-    EXPECT_TRUE(held.in_contact) << "the hand stands where it was";
+    EXPECT_TRUE(held.in_contact) << "the hand did not move";
     reader->ask_pause(false);
     wait_for([&] { return force() > 0.3; });
   }
   stop.store(true);
   servo.join();
-  if (faulty) GTEST_SKIP() << "the machine paused for longer than the arm's watchdog waits";
+  if (faulty) GTEST_SKIP() << "the machine paused for longer than the arm's watchdog time";
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ class MixedArms : public ::testing::Test {
   std::vector<std::unique_ptr<scene::ArmSimulation>> boards_;
 };
 
-TEST_F(MixedArms, ASimulatedHandBesideARealOneBeginsWithTheForces) {
+TEST_F(MixedArms, SimulatedHandStartsWithTheForces) {
   make_real("right");
   auto made = prepared();
   ASSERT_TRUE(made) << made.error().message;
@@ -138,12 +138,12 @@ TEST_F(MixedArms, ASimulatedHandBesideARealOneBeginsWithTheForces) {
   for (int tick = 0; tick < 1400; ++tick) ASSERT_FALSE(session.step(kNobodyStops)) << tick;
   EXPECT_EQ(session.device(0).fault(), driver::Fault::kNone);
   EXPECT_EQ(session.device(1).fault(), driver::Fault::kNone);
-  EXPECT_NEAR(waited_at, -0.03, 0.004) << "its hand waited";
-  EXPECT_GT(session.device(0).state().p_WT.z(), waited_at + 0.03) << "and lifts the beam now";
+  EXPECT_NEAR(waited_at, -0.03, 0.004) << "the hand waited";
+  EXPECT_GT(session.device(0).state().p_WT.z(), waited_at + 0.03) << "the hand lifts the beam now";
   EXPECT_GT(session.device(0).f_sent_W().norm(), 0.3);
 }
 
-TEST_F(MixedArms, EachRealOneMustStandWhereItBegins) {
+TEST_F(MixedArms, EachRealArmMustBeAtItsStartPose) {
   make_real("left");
   make_real("right", {0, 0, 0.04});
   const auto refused = session::Session::open(kSource / "app/scenes/two_hands.yaml", options_);
@@ -152,7 +152,7 @@ TEST_F(MixedArms, EachRealOneMustStandWhereItBegins) {
   EXPECT_NE(refused.error().message.find("away from its home pose"), std::string::npos);
 }
 
-TEST_F(MixedArms, ARealOneGetsNoMoreThanItsTerms) {
+TEST_F(MixedArms, RealArmStaysWithinItsLimits) {
   force_most_ = 0.5;
   make_real("right");
   auto made = prepared();
@@ -166,7 +166,7 @@ TEST_F(MixedArms, ARealOneGetsNoMoreThanItsTerms) {
               -scene::load_arm("vintage_phantom").value().R_WB(0, 0), 1e-12);
 }
 
-TEST_F(MixedArms, APulledCableTakesAllForcesOrItsOwn) {
+TEST_F(MixedArms, PulledCableStopsAllArmsOrOnlyItsOwn) {
   for (const auto rule : {scene::FaultRule::kTogether, scene::FaultRule::kApart}) {
     SCOPED_TRACE(rule == scene::FaultRule::kApart ? "apart" : "together");
     pulled_ = false;
@@ -206,7 +206,7 @@ TEST_F(MixedArms, APulledCableTakesAllForcesOrItsOwn) {
   }
 }
 
-TEST_F(MixedArms, EnterLetsForcesThroughForAllArmsAgain) {
+TEST_F(MixedArms, EnterReactivatesAllArms) {
   make_real("left");
   make_real("right");
   auto made = prepared();
@@ -224,7 +224,7 @@ TEST_F(MixedArms, EnterLetsForcesThroughForAllArmsAgain) {
   ASSERT_EQ(session.device(1).fault(), driver::Fault::kOverSpeed);
   for (int tick = 0; tick < 300; ++tick) ASSERT_FALSE(session.step(kNobodyStops));
   watches.step();
-  EXPECT_EQ(session.device(0).fault(), driver::Fault::kOtherArm) << "nobody pressed Enter";
+  EXPECT_EQ(session.device(0).fault(), driver::Fault::kOtherArm) << "Enter was not pressed";
   key_ = session::EnterKey::kPressed;
   watches.step();
   for (int tick = 0; tick < 3; ++tick) ASSERT_FALSE(session.step(kNobodyStops));
@@ -234,7 +234,7 @@ TEST_F(MixedArms, EnterLetsForcesThroughForAllArmsAgain) {
   EXPECT_EQ(session.device(1).stage(), driver::DeviceStage::kActive);
 }
 
-TEST_F(MixedArms, AViewerSeesAndPausesAllOfThem) {
+TEST_F(MixedArms, ViewerShowsAndPausesAllArms) {
   make_real("right");
   options_.share = true;
   auto made = prepared();
@@ -248,9 +248,9 @@ TEST_F(MixedArms, AViewerSeesAndPausesAllOfThem) {
   EXPECT_EQ(shown.arms[1].in_scene, "right");
   EXPECT_EQ(shown.arms[1].device, "board_of_right");
   EXPECT_EQ(shown.arms[1].p_WB, session.setup().arm_file(1).p_WB);
-  EXPECT_TRUE(shown.knobs.empty()) << "which would turn one arm's alone";
+  EXPECT_TRUE(shown.knobs.empty()) << "the knob would change only one arm";
   driver::TickRecord tick;
-  EXPECT_FALSE((*reader)->newest_of(1, tick)) << "there is none yet";
+  EXPECT_FALSE((*reader)->newest_of(1, tick)) << "no tick yet";
   ASSERT_TRUE(session.open_arm());
   ASSERT_TRUE(session.activate());
   for (int i = 0; i < 1400; ++i) ASSERT_FALSE(session.step(kNobodyStops));

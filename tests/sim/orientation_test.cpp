@@ -54,7 +54,7 @@ TEST(OwnWire, WoodenHapticsKeepsItsForces) {
   EXPECT_EQ(hash_of(*own), hash_of(*before));
 }
 
-TEST(Orientation, ComesFromTheGimbalOfThePolhemAndChangesNoForce) {
+TEST(Orientation, PolhemGimbalChangesNoForce) {
   const auto with = open_arm("polhem", {.duration = 2});
   const auto without = open_arm("polhem", {.duration = 2, .adjust = [](scene::Scene& scene) {
                                              scene.arms.front().arm.model.gimbal.reset();
@@ -73,7 +73,7 @@ TEST(Orientation, ComesFromTheGimbalOfThePolhemAndChangesNoForce) {
   for (const auto& row : without->ticks()) ASSERT_EQ(row.q_WT, driver::TipQuaternion{});
 }
 
-TEST(Orientation, IsSeenAgainByAReplayToTheBit) {
+TEST(Orientation, ReplayIsBitIdentical) {
   const fs::path file = support::scratch_folder() / "stylus.h5";
   session::SessionOptions options{.duration = 1};
   options.record = file;

@@ -44,7 +44,7 @@ std::string refusal(const std::string& object_lines, const std::string& station)
   return opened ? "" : opened.error().message;
 }
 
-TEST(PagedScene, IsTouchedFromTheDiskTheSameInEveryRun) {
+TEST(PagedScene, RunsFromDiskAreBitIdentical) {
   std::vector<std::array<double, 3>> forces;
   for (int run = 0; run < 2; ++run) {
     const auto opened = session::Session::open(scene("", ""), {});
@@ -73,7 +73,7 @@ TEST(PagedScene, IsTouchedFromTheDiskTheSameInEveryRun) {
   }
 }
 
-TEST(PagedScene, RefusesWhatNeedsTheWholeMeshWithASentence) {
+TEST(PagedScene, RefusesFeaturesThatNeedTheWholeMesh) {
   EXPECT_EQ(refusal("    contact: {tracker: compact}\n", ""), "");
   EXPECT_NE(refusal("    contact: {tracker: offset}\n", "").find("a mesh in pages is touched"),
             std::string::npos);
@@ -85,7 +85,7 @@ TEST(PagedScene, RefusesWhatNeedsTheWholeMeshWithASentence) {
             std::string::npos);
 }
 
-TEST(PagedScene, IsTouchedOnTheWallClockWithALoaderOfItsOwn) {
+TEST(PagedScene, RealTimeRunUsesALoaderThread) {
   session::SessionOptions options;
   options.clock = session::ClockKind::kWall;
   options.duration = 1.2;

@@ -217,7 +217,7 @@ TEST(HardCaseRiseLimit, WedgesReturnNoMoreThanWithout) {
       }
     }
   }
-  EXPECT_GT(acted, 100) << "the limit was hardly met: nothing was tested";
+  EXPECT_GT(acted, 100) << "the limit was hardly reached, so nothing was tested";
   support::record_hard_case(10,
                             "wedges and plates at random, rise limit on the vector, 0.05 to 1 m/s",
                             "<= mean energy back over that without it", mean, 1, "1");

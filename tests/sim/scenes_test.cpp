@@ -59,7 +59,7 @@ TEST_P(ShippedScene, CompletesRepeatablyWithoutFaultsOrHeap) {
   for (int time = 0; time < 2; ++time) {
     const auto session = support::open_shipped(GetParam().name);
     ASSERT_TRUE(session);
-    EXPECT_GT(session->scene().description.size(), 40u) << "says what to feel";
+    EXPECT_GT(session->scene().description.size(), 40u) << "the scene needs a description";
     driver::ServoEnd end{};
     EXPECT_EQ(support::heap_calls_of([&] { end = session->run(std::atomic<bool>{false}); }), 0);
     EXPECT_EQ(end, driver::ServoEnd::kDone);
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
         SceneRun{"trampoline", 0x7af5bdbc06ca833}, SceneRun{"water_balloon", 0xd58d0192f31de9f0}),
     [](const auto& scene) { return std::string(scene.param.name); });
 
-TEST(BoxScene, TurnsTheForceInWedgesButNotByTheEntryFace) {
+TEST(BoxScene, OnlyTheRightBoxIsTouchedOnItsSide) {
   const auto session = support::open_shipped("box");
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
@@ -114,8 +114,8 @@ TEST_P(DentedScene, ShowsItsDent) {
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
   ASSERT_TRUE(session->records().dents);
   const render::BodyPatch& dent = session->records().dents->deepest();
-  EXPECT_GT(dent.triangle_count, 11) << "6 in place of one and 2 of each neighbour, at least";
-  EXPECT_EQ(dent.share, 1) << "drawn in full";
+  EXPECT_GT(dent.triangle_count, 11) << "at least 6 instead of one, and 2 of each neighbour";
+  EXPECT_EQ(dent.share, 1) << "drawn completely";
   EXPECT_EQ(dent.object, 0);
   EXPECT_GT(session->records().dents->drawn().drawings, 0u);
   // The deformed mesh is as watertight as the original.

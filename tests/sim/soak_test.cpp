@@ -167,7 +167,7 @@ std::uint64_t ticks_in_all() {
   return support::long_form() ? 100'000'000 : 140'000;
 }
 
-TEST(Soak, EverySceneOutlivesAHandThatGoesAnywhere) {
+TEST(Soak, EverySceneSurvivesARandomHand) {
   // Memory that a service thread or the C++ library keeps once; one leaked byte per tick would
   // exceed it.
   constexpr std::size_t kGrowthMax = 8192;  // bytes
@@ -196,9 +196,9 @@ TEST(Soak, EverySceneOutlivesAHandThatGoesAnywhere) {
     done += one.ticks;
   }
   if (!watched()) {
-    EXPECT_LE(heap_in_use(), heap_before + kGrowthMax) << "scenes leave something behind";
+    EXPECT_LE(heap_in_use(), heap_before + kGrowthMax) << "scenes leak memory";
   }
-  EXPECT_GT(in_contact, done / 20) << "hands that touch nothing say nothing";
+  EXPECT_GT(in_contact, done / 20) << "hands without contact test nothing";
   std::printf(
       "soaked: %llu ticks of %zu scenes on %u threads, %.0f %% in contact, hash %016llx, %.1f kB "
       "of heap\n",
@@ -207,7 +207,7 @@ TEST(Soak, EverySceneOutlivesAHandThatGoesAnywhere) {
       static_cast<unsigned long long>(hash_of(results)), static_cast<double>(heap_in_use()) / 1e3);
 }
 
-TEST(Soak, GivesTheSameBitsOnAnyNumberOfThreads) {
+TEST(Soak, IsBitIdenticalOnAnyNumberOfThreads) {
   const auto scenes = shipped_scenes();
   const std::uint64_t ticks = watched() ? 100 : 2'000;
   const auto alone = soak_all(scenes, ticks, 1);

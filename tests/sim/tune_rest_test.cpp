@@ -106,9 +106,8 @@ TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
     }
   }
   std::printf(
-      "  of %d scenes %d oscillate; %d warned of, %d of them wrongly, %d missed (causes by the "
-      "laws "
-      "alone: %d, %d wrongly)\n",
+      "  of %d scenes %d oscillate; %d warnings, %d of them wrong, %d missed (from the laws only: "
+      "%d warnings, %d wrong)\n",
       ran, oscillate, alarms, wrong, missed, by_rules, rules_wrong);
   EXPECT_GT(ran, count * 3 / 4);
   EXPECT_GT(oscillate, 1);
@@ -164,7 +163,7 @@ TEST(TuneRest, IsSilentInAGroove) {
 }
 
 // If a path only strokes an object, the hand is stopped inside it.
-TEST(TuneRest, StopsTheHandInWhatItOnlyStrokes) {
+TEST(TuneRest, StopsTheHandInAStrokedObject) {
   const auto folder = support::scratch_folder();
   const auto file = folder / "stroke.yaml";
   std::ofstream(file)

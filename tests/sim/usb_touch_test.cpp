@@ -115,7 +115,7 @@ class UsbTouch : public testing::TestWithParam<usb::ShelfEntry> {
   double force_ = 0, force_max_ = 0;
 };
 
-TEST_P(UsbTouch, BringsEveryPositionAndForceOverWithinAQuantum) {
+TEST_P(UsbTouch, TransfersPositionAndForceWithinAQuantum) {
   const int ticks = support::long_form() ? 10'000 : 3'000;
   int in_contact = 0, fresh = 0;
   Eigen::Vector3d wanted(0, 0, 0);

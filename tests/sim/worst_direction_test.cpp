@@ -152,7 +152,7 @@ TEST(WorstDirection, SingularPoseHasNoLimitsToOffer) {
   EXPECT_EQ(scene::tip_limits(J, Matrix3d::Identity(), Matrix3d::Identity(), {1, 1, 1}).damping, 0);
 }
 
-TEST(Tuning, FindsByLawWhatTheWholeWaySimulates) {
+TEST(Tuning, LawMatchesTheFullSimulation) {
   const auto file = support::scratch_folder() / "wall.yaml";
   std::ofstream(file)
       << "name: wall\narm: " << THIMBLE_SOURCE_DIR

@@ -71,7 +71,7 @@ struct Pushes {
   std::array<double, 2> work{};
 };
 
-TEST(SharedBody, StoresForEachHandWhatThisHandPutIn) {
+TEST(SharedBody, StoresEnergySeparatelyForEachHand) {
   Pushes pushes(0);
   support::Random random(1);
   std::array<double, 2> flow{};  // J, sum of the work in and out
@@ -89,7 +89,7 @@ TEST(SharedBody, StoresForEachHandWhatThisHandPutIn) {
   EXPECT_GT(flow[0], 1e-3);
 }
 
-TEST(SharedBody, StoresInSumItsEnergy) {
+TEST(SharedBody, StoredPartsSumToItsEnergy) {
   Pushes pushes(0);
   support::Random random(2);
   for (int k = 0; k < 5'000; ++k) {
@@ -99,7 +99,7 @@ TEST(SharedBody, StoresInSumItsEnergy) {
   }
 }
 
-TEST(SharedBody, LossesPayForNoHand) {
+TEST(SharedBody, LossesAreNoCreditForAHand) {
   // One hand drags the body through a thick liquid; the other holds it without force.
   Pushes pushes(5);
   const double before = pushes.hands[1].energy();
@@ -113,7 +113,7 @@ TEST(SharedBody, LossesPayForNoHand) {
   EXPECT_GT(least, before - 1e-6);
 }
 
-TEST(SharedBody, WorkOfOneHandIsAFallForTheOther) {
+TEST(SharedBody, WorkOfOneHandReducesTheOthersEnergy) {
   // The body is at rest: the energy from one hand goes to the other in the same tick.
   Pushes pushes(0);
   for (int k = 0; k < 50; ++k) pushes.tick({Vector3d(0, 1, 0), Vector3d(0, 0, 0)});
@@ -206,7 +206,7 @@ TEST(SharedBody, HandsOnClosedLoopsWithLossesLoseNoForce) {
   EXPECT_EQ(held.changed, 0);
 }
 
-TEST(SharedBody, HandsOnClosedLoopsGetNoEnergyInSum) {
+TEST(SharedBody, HandsOnClosedLoopsGetNoTotalEnergy) {
   Held held(0);
   for (int k = 0; k < 60'000; ++k) held.tick(loops(k, 1, 1.5));
   // The hand's allowance, twice the onset, and its maximum saved credit.
@@ -228,7 +228,7 @@ double pushed_along(double damping) {
   return held.rig(1).work() - held.rig(1).dissipated();
 }
 
-TEST(SharedBody, DragOfOneHandPaysForNoWrongForce) {
+TEST(SharedBody, DragIsNoCreditForAWrongForce) {
   const driver::EnergyGuardSettings stage = explained_stage();
   const double tick = 2.5 * 0.26 * 2 * kTick;  // and the delay
   for (const double damping : {0.0, 5.0, 20.0}) {

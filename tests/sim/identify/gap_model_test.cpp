@@ -56,7 +56,7 @@ Gap::Vector drawn(support::Random& random, bool rubs) {
 
 using Angles = std::vector<double>;
 
-TEST(GapModel, MovesAlikeAloneBesideOthersAndOnPlainLanes) {
+TEST(GapModel, IsBitIdenticalInAnyLaneAndWithoutAvx2) {
   const ArmMotion motion = shaken();
   support::Random random(std::uint64_t{3});
   support::RunHash hash;
@@ -95,7 +95,7 @@ std::pair<double, double> slid(double v, double a, double c, double t) {
   return {x + 0.5 * on * left * left, on * left};
 }
 
-TEST(GapModel, SlidesTheTipLikeABodyWithDryFriction) {
+TEST(GapModel, TipSlidesLikeABodyWithDryFriction) {
   // Only the weight pulls on the tip: motors stay where they are, with slack cables.
   ArmMotion motion = shaken();
   for (MotionSample& sample : motion.samples) {

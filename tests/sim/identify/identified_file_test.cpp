@@ -28,7 +28,7 @@ ArmConstants some_constants() {
   return found;
 }
 
-TEST(IdentifiedFile, IsTheArmsOwnButForWhatWasMeasured) {
+TEST(IdentifiedFile, ChangesOnlyMeasuredConstants) {
   const std::filesystem::path arm =
       std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml";
   const auto file = support::scratch_folder() / "thimble_identified.yaml";
@@ -63,7 +63,7 @@ std::string text_of(const char* arm) {
   return content.str();
 }
 
-TEST(IdentifiedFile, NamesMotorsAndCablesThatWereSeen) {
+TEST(IdentifiedFile, WritesDetectedMotorsAndCables) {
   ArmConstants found = some_constants();
   found.cables.emplace();
   for (std::size_t i = 0; i < 3; ++i) {
@@ -100,7 +100,7 @@ TEST(IdentifiedFile, NamesMotorsAndCablesThatWereSeen) {
   EXPECT_EQ(train_of(*kept).current_lag, 0.001);
 }
 
-TEST(IdentifiedFile, LeavesOutAWeightThatIsNotToldFromNone) {
+TEST(IdentifiedFile, OmitsAnInsignificantWeight) {
   ArmConstants found = some_constants();
   found.weight = {0.0002, 0.0003};
   const auto text = identified_text(text_of("vintage_phantom"), found, {});
@@ -108,7 +108,7 @@ TEST(IdentifiedFile, LeavesOutAWeightThatIsNotToldFromNone) {
   EXPECT_EQ(text->find("weight:"), std::string::npos);
 }
 
-TEST(IdentifiedFile, WritesNoWeightWhereNoneWasSeen) {
+TEST(IdentifiedFile, ReplacesAnInsignificantWeightByZero) {
   std::string text = text_of("vintage_phantom");
   text.insert(text.find("  motors:\n"), "    weight: 0.02\n");
   ArmConstants found = some_constants();
@@ -118,7 +118,7 @@ TEST(IdentifiedFile, WritesNoWeightWhereNoneWasSeen) {
   EXPECT_NE(written->find("weight: 0  #"), std::string::npos) << *written;
 }
 
-TEST(IdentifiedFile, TakesAPeriodOfMoreDigitsThanItWrites) {
+TEST(IdentifiedFile, AcceptsAPeriodWithMoreDigits) {
   Identified found;
   found.reports = ReportTiming{.period = {0.001000004, 1e-8}, .jitter = {1.4e-4, 3e-6}};
   const auto written = further_text(text_of("vintage_phantom"), found, {});

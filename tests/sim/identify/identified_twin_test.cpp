@@ -64,7 +64,7 @@ TEST(IdentifiedTwin, HasTheDelayAndTheWatchdogOfItsArm) {
   EXPECT_NEAR(again->watchdog->time.value, found->watchdog->time.value, 0.002);
 }
 
-TEST(IdentifiedTwin, SaysInItsFileWhatNoKeyHolds) {
+TEST(IdentifiedTwin, WritesCommentsForValuesWithoutAKey) {
   Identified found;
   found.constants.mass = {0.08, 0.001};
   found.constants.coulomb = {0.04, 0.001};
@@ -129,7 +129,7 @@ TEST(IdentifiedTwin, KeepsWhatWasNotMeasured) {
   EXPECT_NEAR(1e-9 * static_cast<double>(read(*text).simulated.wire.jitter_ns), 2.078e-4, 1e-7);
 }
 
-TEST(IdentifiedTwin, OfABadFitSaysSoInEachMark) {
+TEST(IdentifiedTwin, BadFitIsInEveryMark) {
   Identified found;
   found.constants.mass = {0.08, 0.001};
   for (Estimate& gain : found.constants.gain) gain = {1.1, 0.01};
@@ -153,7 +153,7 @@ TEST(IdentifiedTwin, OfABadFitSaysSoInEachMark) {
       write_identified(kArm, file, found, {.date = "2026-11-25", .arm = "A 1"}), "there already"));
 }
 
-TEST(IdentifyForce, StaysBelowWhatTheUserAllows) {
+TEST(IdentifyForce, StaysBelowTheUsersLimit) {
   const HiddenArm arm = hidden_arm(7);
   double before = 0;
   for (const double allowed : {0.5, 1.0, 2.0}) {
@@ -174,7 +174,7 @@ TEST(IdentifyForce, StaysBelowWhatTheUserAllows) {
   }
 }
 
-TEST(IdentifyForce, IsRefusedBeyondTheFileAndWhereItCarriesNoMass) {
+TEST(IdentifyForce, LimitMustSuitTheFileAndTheMass) {
   const scene::ArmFile file = scene::load_arm(kArm).value();
   EXPECT_TRUE(check_forces(file, {}).ok());
   EXPECT_TRUE(check_forces(file, {.known_mass = 0.06}).ok());
@@ -186,7 +186,7 @@ TEST(IdentifyForce, IsRefusedBeyondTheFileAndWhereItCarriesNoMass) {
       support::refuses(check_forces(file, {.known_mass = 0.04, .force_most = 0.5}), "0.031 kg"));
 }
 
-TEST(IdentifyForce, OfTheWatchdogsPushIsWithinItToo) {
+TEST(IdentifyForce, WatchdogPushStaysWithinTheLimit) {
   const HiddenArm arm = hidden_arm(3);
   auto bench = simulated_bench(arm.file, 0);
   ASSERT_TRUE(bench.ok()) << bench.error().message;

@@ -188,7 +188,7 @@ Seen watched(const Case& one, std::uint64_t seed) {
   return seen;
 }
 
-TEST(IdentifyBounds, AreKeptWhateverTheArmItsHandAndItsFaultsAre) {
+TEST(IdentifyBounds, HoldForAnyArmHandAndFault) {
   const int arms = long_form() ? 40 : 2;
   for (const Trouble& trouble : troubles()) {
     SCOPED_TRACE(trouble.name);

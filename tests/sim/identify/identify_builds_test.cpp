@@ -87,7 +87,7 @@ double delay_of_bus(const scene::ArmFile& file) {
     const auto found = std::find(answered.rbegin(), answered.rend(), seen);
     EXPECT_NE(found, answered.rend());
     const int ticks = static_cast<int>(found - answered.rbegin()) + 1;
-    EXPECT_TRUE(delay == 0 || delay == ticks) << "it is the same in each tick";
+    EXPECT_TRUE(delay == 0 || delay == ticks) << "the delay must be the same in each tick";
     delay = ticks;
   }
   return 1e-3 * delay;
@@ -152,7 +152,7 @@ TEST(IdentifyBuilds, FindsTheConstantsOfHiddenPolhems) {
   find_hidden_arms("polhem", long_form() ? 30 : 10);
 }
 
-TEST(IdentifyBuilds, NamesAMotorOfAFalconThatIsTurnedRoundOrDead) {
+TEST(IdentifyBuilds, NamesAReversedOrDeadMotorOfAFalcon) {
   for (int motor = 0; motor < 3; ++motor) {
     for (const double gain : {-1.0, 0.0}) {
       HiddenArm arm = hidden_arm_of("falcon", 7);

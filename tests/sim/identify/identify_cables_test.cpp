@@ -24,7 +24,7 @@ using support::kKnownMass;
 using support::long_form;
 using support::Score;
 
-TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
+TEST(IdentifyCables, FindsCablesAndTheLinksBehindThem) {
   const int arms = long_form() ? 20 : 1;
   Score mass{"mass", 0.03}, gain{"gain", 0.02}, delay{"delay", 1e-4}, coulomb{"Coulomb", 0.05};
   Score resonance{"resonance", 0.05}, antiresonance{"antires.", 0.08}, inertia{"motor", 0.06};
@@ -80,7 +80,7 @@ TEST(IdentifyCables, FindsOrReportsUnseenResonances) {
     const auto found =
         identified(arm, {.seconds = long_form() ? 30.0 : 20.0, .play = long_form(), .seed = seed});
     ASSERT_TRUE(found.ok()) << found.error().message;
-    ASSERT_TRUE(found->constants.cables) << "arm " << k << ": no cables";
+    ASSERT_TRUE(found->constants.cables) << "arm " << k << ": no cables found";
     if (!found->against.empty()) continue;
     const auto sentences = not_identified(*found);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -106,7 +106,7 @@ TEST(IdentifyCables, FindsOrReportsUnseenResonances) {
   EXPECT_LT(worst, 0.05);
 }
 
-TEST(IdentifyCables, AreNotWrittenWhereAHandHoldsTheTip) {
+TEST(IdentifyCables, AreNotWrittenIfAHandHoldsTheTip) {
   // Backlash is searched for; its fit has a separate spring at the tip.
   const int arms = long_form() ? 12 : 1;
   support::Random random(77);
@@ -131,7 +131,7 @@ TEST(IdentifyCables, AreNotWrittenWhereAHandHoldsTheTip) {
   }
 }
 
-TEST(IdentifyCables, SaysFromWhereOnAStretchIsUnseen) {
+TEST(IdentifyCables, ReportsItsDetectionLimit) {
   const auto found = identified(hidden_arm(7), {.seconds = long_form() ? 20.0 : 12.0});
   ASSERT_TRUE(found.ok()) << found.error().message;
   EXPECT_GT(found->lines.unseen_from.minCoeff(), 100);
@@ -144,7 +144,7 @@ TEST(IdentifyCables, SaysFromWhereOnAStretchIsUnseen) {
   }));
 }
 
-TEST(LineForces, AreOddMultiplesOfWhichNoTwoAreAlikeAndStaySmall) {
+TEST(LineForces, AreDistinctOddMultiplesAndSmall) {
   std::set<long> seen;
   for (int axis = 0; axis < 3; ++axis) {
     for (int line = 0; line < LineForces::kLines; ++line) {

@@ -55,7 +55,7 @@ TEST(EncoderNoise, NeedsAJointThatRestsWithChangingCounts) {
   EXPECT_FALSE(noise_at_rest({}).at_rest[0]);
 }
 
-TEST(EncoderStep, IsTheSmallestDifferenceThatIsNoMisreadCount) {
+TEST(EncoderStep, IgnoresMisreadCounts) {
   ArmMotion motion;
   motion.step = {1e-4, 1e-4, 1e-4};
   for (int k = 0; k < 400; ++k) {
@@ -73,7 +73,7 @@ TEST(EncoderStep, IsTheSmallestDifferenceThatIsNoMisreadCount) {
   EXPECT_EQ(step[2].counts, 0);
 }
 
-TEST(Encoders, OfASimulatedArmCountByOnesAndAreQuietAtRest) {
+TEST(Encoders, SimulatedOnesCountByOneAndAreQuietAtRest) {
   const auto found =
       support::identified(support::hidden_arm(4), {.seconds = 10, .link = true, .seed = 4});
   ASSERT_TRUE(found.ok()) << found.error().message;

@@ -21,7 +21,7 @@ using support::kKnownMass;
 using support::long_form;
 using support::Random;
 
-TEST(IdentifyFriction, IsToldInBothDirectionsWhereItDiffers) {
+TEST(IdentifyFriction, IsReportedForDirectionsThatDiffer) {
   // Friction c+ in one direction and c- in the other equals exactly their mean plus a constant
   // force of half their difference. The arm is simulated in that form.
   const int arms = long_form() ? 60 : 1;
@@ -53,14 +53,14 @@ TEST(IdentifyFriction, IsToldInBothDirectionsWhereItDiffers) {
       ++all;
     }
   }
-  std::printf("%d of %d arms told; worst %.3g of the friction; %d of %d intervals hold\n", told,
+  std::printf("%d of %d arms reported; worst %.3g of the friction; %d of %d intervals hold\n", told,
               arms, worst, held, all);
   EXPECT_EQ(told, arms);
   EXPECT_LT(worst, 0.05);
   EXPECT_GT(held, 0.85 * all);
 }
 
-TEST(IdentifySaturation, NamesTheMotorThatGivesTooLittle) {
+TEST(IdentifySaturation, NamesTheSaturatedMotor) {
   const int arms = long_form() ? 30 : 1;
   int held = 0, all = 0;
   double worst = 0;

@@ -41,7 +41,7 @@ HiddenArm rubbing_arm(std::uint64_t seed) {
   return arm;
 }
 
-TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
+TEST(IdentifyJointFriction, IsFoundForEachJointInAdditionToTheTip) {
   const int arms = long_form() ? 40 : 1;
   Score dry{"dry", 0.05}, viscous{"viscous", 0.25}, tip{"tip", 0.05}, gain{"gains", 0.02};
   Score mass{"mass", 0.03}, motor{"motor", 0.06}, stiffness{"cable", 0.06};
@@ -59,7 +59,7 @@ TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
       std::printf("arm %d: %s\n", k,
                   !found                    ? found.error().message.c_str()
                   : !found->against.empty() ? found->against.front().c_str()
-                                            : "no friction was seen");
+                                            : "no friction detected");
       continue;
     }
     EXPECT_FALSE(found->play.seen) << "arm " << k;
@@ -97,7 +97,7 @@ TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
   EXPECT_LE(refused, arms / 10);
 }
 
-TEST(IdentifyJointFriction, IsNotInventedWhereMotorsTurnFreely) {
+TEST(IdentifyJointFriction, IsNotReportedForFreeMotors) {
   const int arms = long_form() ? 40 : 0;
   int told = 0;
   double most = 0;
@@ -143,7 +143,7 @@ TEST(IdentifyJointFriction, IsWrittenWithItsInterval) {
   EXPECT_NE(again->find("coulomb: [0, 0, 0]"), std::string::npos);
 }
 
-TEST(IdentifyJointFriction, NamesTheJointOfMostFriction) {
+TEST(IdentifyJointFriction, NamesTheJointWithHighFriction) {
   Identified found;
   found.play.searched = found.play.fits = true;
   found.play.friction.fits = found.play.friction.seen = true;

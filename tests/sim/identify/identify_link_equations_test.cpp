@@ -121,7 +121,7 @@ TEST(LinkEquations, EachConstantMatchesLagrange) {
   }
 }
 
-TEST(LinkEquations, WithMassAndWeightAtTheTipAreThoseOfAnyLinks) {
+TEST(LinkEquations, ExpressAnyLinksWithMassAndWeightAtTheTip) {
   // Coupling and moment_c have no column: mass and weight at the tip and the other columns express
   // them.
   const Eigen::Vector3d gravity = kGravityConstant * kGravity.normalized();
@@ -143,7 +143,7 @@ TEST(LinkEquations, WithMassAndWeightAtTheTipAreThoseOfAnyLinks) {
       "desk links");
 }
 
-TEST(LinkEquations, GiveAMotionThatKnowsItsLinksTheForcePerMass) {
+TEST(LinkEquations, KnownLinksAddTheirForcePerMass) {
   const RigidLinks links =
       support::desk_links(kSomeArm, 1, kGravityConstant * kGravity.normalized());
   LinkEquations::Row constants;
@@ -161,7 +161,7 @@ TEST(LinkEquations, GiveAMotionThatKnowsItsLinksTheForcePerMass) {
   }
 }
 
-TEST(LinkEquations, AtTheTipAreTheMassMatrixOfTheirBodies) {
+TEST(LinkEquations, MassMatrixAtTheTipMatchesTheBodies) {
   const ArmMotion motion = links_motion();
   const RigidLinks links({{.axial = 2e-4, .pitch = 3e-4, .third = 5e-4},
                           {.turns_with_c = true, .axial = 1e-4, .pitch = 4e-4, .third = 7e-4}},

@@ -28,7 +28,7 @@ ReportTiming timed(const scene::ArmFile& file) {
   return time_reports(**bench, 2, never);
 }
 
-TEST(ReportTiming, IsThatOfTheSimulatedWire) {
+TEST(ReportTiming, MatchesTheSimulatedWire) {
   scene::ArmFile file = scene::load_arm("vintage_phantom").value();
   for (const double period_ms : {1.0, 1.25, 2.0}) {
     file.simulated.firmware.report_period_ns = static_cast<std::int64_t>(1e6 * period_ms);
@@ -47,7 +47,7 @@ TEST(ReportTiming, IsThatOfTheSimulatedWire) {
   }
 }
 
-TEST(ReportTiming, CountsReportsThatAreMissing) {
+TEST(ReportTiming, CountsMissingReports) {
   scene::ArmFile file = scene::load_arm("vintage_phantom").value();
   file.simulated.wire.loss = 0.1;
   const ReportTiming timing = timed(file);
@@ -57,14 +57,14 @@ TEST(ReportTiming, CountsReportsThatAreMissing) {
   EXPECT_NEAR(timing.period.value, 1e-3, 1e-6);
 }
 
-TEST(ReportTiming, SaysWhereLateAndMissingCannotBeToldApart) {
+TEST(ReportTiming, ReportsAmbiguityOfLateAndMissingReports) {
   scene::ArmFile file = scene::load_arm("vintage_phantom").value();
   file.simulated.wire.jitter_ns = 3'000'000;
   EXPECT_TRUE(timed(file).blurred);
   EXPECT_EQ(timing_of({0, 0.001, 0.002}).period.value, 0);
 }
 
-TEST(WatchdogTime, IsFoundOnAFreeTipByThePushesOfIdentifying) {
+TEST(WatchdogTime, IsMeasuredOnAFreeTip) {
   int held = 0, all = 0;
   for (const double watchdog_ms : {100.0, 60.0, 130.0}) {
     if (!long_form() && watchdog_ms != 100) break;
@@ -90,7 +90,7 @@ TEST(WatchdogTime, IsFoundOnAFreeTipByThePushesOfIdentifying) {
   EXPECT_GE(held, 0.8 * all);
 }
 
-TEST(WatchdogTime, PushesNoMoreThanItSaysAndNotOutsideTheWorkspace) {
+TEST(WatchdogTime, PushesStayWithinForceLimitAndWorkspace) {
   for (std::uint64_t seed = 1; seed <= (long_form() ? 40 : 4); ++seed) {
     support::Random random(seed);
     HiddenArm arm = hidden_arm(seed);
@@ -131,7 +131,7 @@ TEST(WatchdogTime, PushesNoMoreThanItSaysAndNotOutsideTheWorkspace) {
   }
 }
 
-TEST(WatchdogTime, SaysWhyItIsNotKnown) {
+TEST(WatchdogTime, ReportsWhyItIsUnknown) {
   const auto sentence_of = [](WatchdogEnd end) {
     Identified found;
     found.reports = ReportTiming{};

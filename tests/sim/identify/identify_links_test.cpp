@@ -66,7 +66,7 @@ LinkFit exact_fit(const HiddenArm& arm) {
   return fit;
 }
 
-TEST(LinkConstants, AreAnArmThatMovesAsTheSeenOne) {
+TEST(LinkConstants, ReproduceTheApparentMasses) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     const HiddenArm arm = linked_arm(seed);
@@ -115,7 +115,7 @@ TEST(LinkConstants, AreAnArmThatMovesAsTheSeenOne) {
   }
 }
 
-TEST(LinkConstants, AreRefusedWhereNoLinksAreSo) {
+TEST(LinkConstants, ImpossibleLinksAreRefused) {
   LinkFit fit = exact_fit(linked_arm(1));
   fit.theta[LinkFit::kInertia] = -1e-3;
   EXPECT_TRUE(support::refuses(tip_and_links(fit, {0, 0, -1}), "negative in some pose"));
@@ -218,7 +218,7 @@ ArmConstants constants_with_links() {
   return found;
 }
 
-TEST(IdentifiedLinks, StandInTheNewFileMarked) {
+TEST(IdentifiedLinks, AreWrittenWithMarks) {
   ArmConstants found = constants_with_links();
   const auto added = identified_text(phantom_text(), found, kLinksMark);
   ASSERT_TRUE(added.ok()) << added.error().message;
@@ -254,7 +254,7 @@ TEST(IdentifiedLinks, StandInTheNewFileMarked) {
   EXPECT_EQ(links_in(*more).moment_b, -2e-4);
 }
 
-TEST(IdentifiedLinks, OfAFileThatNamesSomeAreMeasuredOrItIsRefused) {
+TEST(IdentifiedLinks, FileWithLinksNeedsAMeasurementOfThem) {
   ArmConstants found = constants_with_links();
   std::string named = phantom_text();
   named.insert(named.find("  tip:\n"), "  links:\n    inertia: [0.0003, 0.0002, 0.0001]\n");
@@ -270,7 +270,7 @@ TEST(IdentifiedLinks, OfAFileThatNamesSomeAreMeasuredOrItIsRefused) {
   EXPECT_TRUE(support::refuses(identified_text(named, found, kLinksMark), "--places"));
 }
 
-TEST(IdentifiedLinks, AreNotInventedForAnArmWithout) {
+TEST(IdentifiedLinks, AreNotReportedForAnArmWithoutLinks) {
   for (std::uint64_t seed = 7300; seed < (long_form() ? 7310u : 7301u); ++seed) {
     const HiddenArm arm = support::hidden_arm(seed);
     const auto found =

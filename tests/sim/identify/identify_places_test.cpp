@@ -78,7 +78,7 @@ double mean_of_gains(const HiddenArm& arm) {
   return std::cbrt(arm.gain[0] * arm.gain[1] * arm.gain[2]);
 }
 
-TEST(IdentifyPlaces, FindsTheMassOfHiddenArmsWhereTheyHaveNotBeen) {
+TEST(IdentifyPlaces, FindsTheMassAtUnvisitedPlaces) {
   support::Score score{"mass", 0.03};
   int held_places = 0, all_places = 0;
   // The last arms are four times as heavy: up to a kilogram, which 1 N hardly moves, so encoder
@@ -98,7 +98,7 @@ TEST(IdentifyPlaces, FindsTheMassOfHiddenArmsWhereTheyHaveNotBeen) {
     std::pair<double, double> range;
     // Without a known mass the mean gain sets the scale.
     look_between(arm, *found, 1 / mean_of_gains(arm), seed, one, range);
-    EXPECT_GT(range.second, 1.5 * range.first) << "these links change nothing";
+    EXPECT_GT(range.second, 1.5 * range.first) << "the links of this arm have no effect";
     std::printf("%d: %.3g to %.3g kg, worst %.3g, %d of %d, explained %.5f, better %.3g\n",
                 static_cast<int>(seed), range.first, range.second, one.worst, one.held, one.all,
                 found->explained, found->better);
@@ -122,7 +122,7 @@ TEST(IdentifyPlaces, FindsTheMassOfHiddenArmsWhereTheyHaveNotBeen) {
   EXPECT_GE(held_places, 0.85 * all_places);
 }
 
-TEST(IdentifyPlaces, SaysThatAnArmWithoutLinksHasOneMass) {
+TEST(IdentifyPlaces, ReportsOneMassForAnArmWithoutLinks) {
   for (std::uint64_t seed = 7100; seed < (long_form() ? 7120u : 7101u); ++seed) {
     SCOPED_TRACE(seed);
     const HiddenArm arm = hidden_arm(seed);
@@ -138,13 +138,13 @@ TEST(IdentifyPlaces, SaysThatAnArmWithoutLinksHasOneMass) {
   }
 }
 
-TEST(IdentifyPlaces, KeepToTheForceThatTheUserAllows) {
+TEST(IdentifyPlaces, FitWithALowerForceLimit) {
   const HiddenArm arm = linked_arm(7002);
   const auto found = fitted(arm, 1, 2, 5, 0.5);
   EXPECT_TRUE(found.ok()) << found.error().message;
 }
 
-TEST(IdentifyPlaces, AreNotGoneToWhereLinksCannotBeSeen) {
+TEST(IdentifyPlaces, AreSkippedIfLinksCannotBeDetected) {
   const auto said = [](const char* name, int places, bool stretches, bool held) {
     const scene::ArmFile file = scene::load_arm(name).value();
     auto bench = simulated_bench(file, 0);
@@ -162,7 +162,7 @@ TEST(IdentifyPlaces, AreNotGoneToWhereLinksCannotBeSeen) {
   EXPECT_NE(said("vintage_phantom", 7, false, true).find("holds the tip"), std::string::npos);
 }
 
-TEST(IdentifyPlaces, EndWithZeroForceWhenTheyAreStopped) {
+TEST(IdentifyPlaces, StopEndsWithZeroForce) {
   const HiddenArm arm = hidden_arm(3);
   auto bench = simulated_bench(arm.file, 0);
   ASSERT_TRUE(bench.ok());

@@ -61,7 +61,7 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
       std::printf("arm %d: %s\n", k,
                   !found                    ? found.error().message.c_str()
                   : !found->against.empty() ? found->against.front().c_str()
-                                            : "no play was seen");
+                                            : "no backlash detected");
       continue;
     }
     const auto& train = arm.file.simulated.drive_train;
@@ -95,7 +95,7 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
   EXPECT_LE(refused, arms / 10);
 }
 
-TEST(IdentifyPlay, SaysDownToWhichWidthThereIsNone) {
+TEST(IdentifyPlay, ReportsItsDetectionLimit) {
   const int arms = long_form() ? 40 : 0;
   int told = 0;
   double most = 0;
@@ -119,7 +119,7 @@ TEST(IdentifyPlay, SaysDownToWhichWidthThereIsNone) {
   EXPECT_LT(most, 0.1 * kPlay);
 }
 
-TEST(IdentifyPlay, IsNotBlamedOnLateReportsWhereAMotorOscillates) {
+TEST(IdentifyPlay, OscillatingMotorIsNotTakenForLateReports) {
   // Its motor oscillates at 85 Hz under the force that holds the tip.
   const auto found = identified(arm_with_play(6007, kPlay), {.seconds = 18, .seed = 6007});
   ASSERT_FALSE(found.ok());

@@ -25,7 +25,7 @@ using support::long_form;
 using support::rigid_rubbing_arm;
 using support::Score;
 
-TEST(IdentifyRubbing, IsFoundForEachJointBesideThatOfTheTip) {
+TEST(IdentifyRubbing, IsFoundForEachJointInAdditionToTheTip) {
   const int arms = long_form() ? 40 : 2;
   Score dry{"dry", 0.05}, viscous{"viscous", 0.10}, gain{"gains", 0.02}, mass{"mass", 0.03};
   Score delay{"delay", 1e-4};
@@ -43,7 +43,7 @@ TEST(IdentifyRubbing, IsFoundForEachJointBesideThatOfTheTip) {
       std::printf("arm %d: %s\n", k,
                   !found                    ? found.error().message.c_str()
                   : !found->against.empty() ? found->against.front().c_str()
-                                            : "no friction was seen");
+                                            : "no friction detected");
       continue;
     }
     const auto& train = arm.file.simulated.drive_train;
@@ -65,7 +65,7 @@ TEST(IdentifyRubbing, IsFoundForEachJointBesideThatOfTheTip) {
   EXPECT_LE(refused, arms / 10);
 }
 
-TEST(IdentifyRubbing, IsNotInventedWhereTheTipAloneRubs) {
+TEST(IdentifyRubbing, IsNotReportedIfOnlyTheTipHasFriction) {
   const int arms = long_form() ? 40 : 1;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(8100 + k);
@@ -124,7 +124,7 @@ TEST(IdentifyRubbing, IsWrittenJointByJointWithItsInterval) {
   EXPECT_NE(section.find("periods_per_turn: 7"), std::string::npos);
 }
 
-TEST(IdentifyRubbing, IsToldForBothDirectionsWhereTheyDiffer) {
+TEST(IdentifyRubbing, IsReportedForDirectionsThatDiffer) {
   Identified found = with_rubbing();
   MotionSample sample;
   sample.G = 8 * Eigen::Matrix3d::Identity();  // levers of 0.125 m
@@ -149,9 +149,9 @@ TEST(IdentifyRubbing, NamesTheJointThatSticks) {
   const Eigen::Vector3d levers(0.14, 0.14, 0.14);
   rubbing.coulomb = {Estimate{0.001, 1e-5}, {0.02, 2e-4}, {0.0015, 1e-5}};
   EXPECT_EQ(rubbing.stuck(0.04, levers), 1);
-  EXPECT_EQ(rubbing.stuck(0.2, levers), -1) << "the tip rubs more";
+  EXPECT_EQ(rubbing.stuck(0.2, levers), -1) << "the tip has more friction";
   rubbing.coulomb[2].value = 0.003;
-  EXPECT_EQ(rubbing.stuck(0.04, levers), -1) << "another rubs too";
+  EXPECT_EQ(rubbing.stuck(0.04, levers), -1) << "another joint has high friction too";
 }
 
 }  // namespace

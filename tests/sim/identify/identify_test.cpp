@@ -81,8 +81,8 @@ TEST(Identify, FindsConstantsOrReportsTooMuchFriction) {
       ++refused;
       continue;
     }
-    EXPECT_FALSE(found->constants.cables) << "it has none that stretches";
-    EXPECT_FALSE(found->waves.seen()) << "its motors do not cog";
+    EXPECT_FALSE(found->constants.cables) << "it has no cable that stretches";
+    EXPECT_FALSE(found->waves.seen()) << "its motors have no cogging";
     const auto& plant = arm.file.simulated.plant;
     const ArmConstants& constants = found->constants;
     EXPECT_TRUE(constants.absolute);
@@ -121,14 +121,14 @@ TEST(Identify, FindsConstantsOrReportsTooMuchFriction) {
   EXPECT_GT(held, (long_form() ? 0.90 : 0.80) * all);
 }
 
-TEST(Identify, SaysThatAHandHoldsTheTip) {
+TEST(Identify, ReportsAHandOnTheTip) {
   // From two fingers that barely touch it to a firm grip.
   for (std::uint64_t seed = 1; seed <= (long_form() ? 60 : 2); ++seed) {
     SCOPED_TRACE(seed);
     HiddenArm arm = long_form() && seed % 3 != 2 ? wide_hidden_arm(seed) : hidden_arm(seed);
     arm.file.simulated.hand = random_hand(seed);
     const auto found = identified(arm, {.seconds = 12, .seed = seed}, true);
-    ASSERT_FALSE(found.ok() && found->against.empty()) << "a hand was taken for the arm";
+    ASSERT_FALSE(found.ok() && found->against.empty()) << "a hand was mistaken for the arm";
     const std::string said = found ? found->against.front() : found.error().message;
     EXPECT_EQ(said.find("pulls against its encoder"), std::string::npos) << "no sign is wrong";
     EXPECT_TRUE(said.find("grip") != std::string::npos ||
@@ -186,7 +186,7 @@ bool oscillates_below_lines(std::uint64_t seed) {
   return hidden_arm(seed).file.simulated.plant.mass > 0.12;
 }
 
-TEST(Identify, TellsAWrongModelApart) {
+TEST(Identify, DetectsAWrongModel) {
   for (std::uint64_t seed = 1; seed <= (long_form() ? 10 : 1); ++seed) {
     SCOPED_TRACE(seed);
     EXPECT_EQ(said_of(seed, [](auto&) {}), "");
@@ -232,7 +232,7 @@ TEST(Identify, TellsAWrongModelApart) {
   }
 }
 
-TEST(Identify, SaysThatCablesAreSofterThanItLooksFor) {
+TEST(Identify, ReportsCablesSofterThanTheSearchRange) {
   constexpr std::uint64_t kSeed = 2;
   ASSERT_TRUE(oscillates_below_lines(kSeed));
   const std::string said = said_of(kSeed, soften_cables, false, true, false);
@@ -240,7 +240,7 @@ TEST(Identify, SaysThatCablesAreSofterThanItLooksFor) {
   EXPECT_NE(said.find("cables are identified from 15 Hz on"), std::string::npos) << said;
 }
 
-TEST(Identify, BlamesCablesThatWereNotLookedFor) {
+TEST(Identify, NamesCablesThatWereNotSearchedFor) {
   for (std::uint64_t seed = 1; seed <= (long_form() ? 10 : 1); ++seed) {
     for (const double stiffness : {200.0, 2000.0}) {
       HiddenArm arm = hidden_arm(seed);
@@ -258,7 +258,7 @@ TEST(Identify, BlamesCablesThatWereNotLookedFor) {
   }
 }
 
-TEST(Identify, SaysThatAHandPullsTheTipToAndFro) {
+TEST(Identify, ReportsAHandThatMovesTheTip) {
   for (std::uint64_t seed = 1; seed <= (long_form() ? 10 : 1); ++seed) {
     HiddenArm arm = hidden_arm(seed);
     arm.file.simulated.hand = {.mass = 0.02, .stiffness = 60, .damping = 1};
@@ -277,7 +277,7 @@ TEST(Identify, SaysThatAHandPullsTheTipToAndFro) {
   }
 }
 
-TEST(Identify, NamesAMotorThatIsTurnedRoundOrDead) {
+TEST(Identify, NamesAReversedOrDeadMotor) {
   for (std::uint64_t seed = 1; seed <= (long_form() ? 10 : 3); ++seed) {
     for (int motor = 0; motor < 3; ++motor) {
       const std::string name = "Motor " + std::to_string(motor + 1);
@@ -292,7 +292,7 @@ TEST(Identify, NamesAMotorThatIsTurnedRoundOrDead) {
   }
 }
 
-TEST(Identify, NeverAsksForMoreThanItSaysNorGoesFar) {
+TEST(Identify, StaysWithinForceAndDistanceLimits) {
   for (std::uint64_t seed = 1; seed <= (long_form() ? 200 : 2); ++seed) {
     HiddenArm arm = hidden_arm(seed);
     for (const double pull : {0.0, arm.file.simulated.plant.coulomb + 0.03, 5.0}) {
@@ -314,7 +314,7 @@ TEST(Identify, NeverAsksForMoreThanItSaysNorGoesFar) {
         if (pushed == 0) begin = p_WT;
         pushed += wanted.isZero(0) ? 0 : 1;
         const bool far = (p_WT - begin).norm() >= Excitation::kFar;
-        ASSERT_TRUE(!far || wanted.isZero(0)) << "asked to move on beyond its space";
+        ASSERT_TRUE(!far || wanted.isZero(0)) << "force requested outside of its space";
       });
       const auto motion = record_motion(**bench, file, {.seconds = 10, .seed = seed}, never);
       EXPECT_EQ(motion.ok(), pull == 0) << pull;

@@ -174,7 +174,7 @@ TEST(IdentifyWaves, ComparesOnlyMotorsThatTurnedFarEnough) {
   }
 }
 
-TEST(IdentifyWaves, SaysDownToWhichAmplitudeNoneWereSeen) {
+TEST(IdentifyWaves, ReportsItsDetectionLimit) {
   // No waves are reported for arms without any; amplitudes slightly above the reported detection
   // limit are found, for one motor at a time.
   int invented = 0, missed = 0;
@@ -206,13 +206,13 @@ TEST(IdentifyWaves, SaysDownToWhichAmplitudeNoneWereSeen) {
     // Identifying the number of periods per turn needs a larger amplitude.
     missed += some->waves.cogging[motor].seen ? 0 : 1;
   }
-  std::printf("%d of %d arms without waves told to have some, %d above the limit missed\n",
-              invented, arms, missed);
+  std::printf("waves reported for %d of %d arms without any, %d above the limit missed\n", invented,
+              arms, missed);
   EXPECT_EQ(invented, 0);
   EXPECT_LE(missed, 0.05 * arms);
 }
 
-TEST(IdentifyWaves, TakesTheNumberOfPeriodsThatTheFileNames) {
+TEST(IdentifyWaves, UsesThePeriodsOfTheFile) {
   HiddenArm arm = hidden_arm(9101);
   auto& train = arm.file.simulated.drive_train;
   train.cogging.setConstant(kCogging);
@@ -265,7 +265,7 @@ device_sim::DriveTrainSettings written(const Identified& found, const std::strin
   return read.ok() ? read->simulated.drive_train : device_sim::DriveTrainSettings{};
 }
 
-TEST(IdentifyWaves, GoIntoTheNewFileWhateverItNamedBefore) {
+TEST(IdentifyWaves, ReplaceAnyEarlierValues) {
   const Identified found = with_waves();
   for (const std::string own :
        {"", "  drive_train: {current_lag: 0.0003}\n",
@@ -288,7 +288,7 @@ TEST(IdentifyWaves, GoIntoTheNewFileWhateverItNamedBefore) {
   }
 }
 
-TEST(IdentifyWaves, ThatWereNotSeenAreNoneInTheNewFile) {
+TEST(IdentifyWaves, UndetectedWavesAreZeroInTheNewFile) {
   Identified found = with_waves();
   found.waves.cogging[0].seen = found.waves.ripple[2].seen = false;
   const std::string named = "  drive_train: {cogging: [0.1, 0.1, 0.1], periods_per_turn: 7}\n";
@@ -307,7 +307,7 @@ TEST(IdentifyWaves, ThatWereNotSeenAreNoneInTheNewFile) {
   EXPECT_NE(said.find("14, 13, 15 fit about equally well"), std::string::npos) << said;
 }
 
-TEST(IdentifyWaves, StandInTheTableMotorByMotor) {
+TEST(IdentifyWaves, TableListsEachMotor) {
   const auto file = scene::load_arm("vintage_phantom").value();
   const std::string table = constants_table(with_waves(), file);
   EXPECT_NE(table.find("periods of cogging, ripple         14 "), std::string::npos) << table;

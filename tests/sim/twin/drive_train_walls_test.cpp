@@ -9,7 +9,7 @@
 namespace thimble::twin {
 namespace {
 
-TEST(DriveTrainWalls, AreThoseOfTheLinearLoopAndOfTheLaw) {
+TEST(DriveTrainWalls, MatchTheLinearLoopAndTheLaw) {
   const auto setup = studies::stability_setup({.arm_file = "vintage_phantom", .direction = {}});
   ASSERT_TRUE(setup.ok()) << setup.error().message;
   using enum studies::StabilityPart;

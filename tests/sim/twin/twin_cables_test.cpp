@@ -78,7 +78,7 @@ TEST(TwinCables, SameConstantsReproduceTheMotion) {
 }
 
 TEST(TwinCables, NameTheConstantThatIsWrong) {
-  if (!long_form()) GTEST_SKIP() << "18 constants, each tried: in the long form alone";
+  if (!long_form()) GTEST_SKIP() << "18 constants, each tested: only in the long form";
   using Train = device_sim::DriveTrainSettings;
   struct Mistake {
     const char* key;

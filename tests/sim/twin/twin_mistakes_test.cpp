@@ -103,7 +103,8 @@ TEST(TwinMistakes, WhatMotionCannotShowIsNamed) {
     const auto sentences = unseen_differences(right, wrong);
     ASSERT_EQ(sentences.size(), 1u) << one.word;
     EXPECT_NE(sentences.front().find(one.word), std::string::npos) << sentences.front();
-    EXPECT_NE(sentences.front().find("thimble "), std::string::npos) << "what can tell";
+    EXPECT_NE(sentences.front().find("thimble "), std::string::npos)
+        << "the sentence must name a test";
   }
 }
 

@@ -138,7 +138,7 @@ void try_twin(const HiddenAndTwin& both, std::uint64_t seed, Worst& worst) {
       apart(free_motion(both.arm, share, ~seed), free_motion(both.twin, share, ~seed));
   if (!(wall < 0.05)) {
     ++worst.walls_off;
-    std::printf("arm %d: wall of %.0f N/m, in truth %.0f\n", static_cast<int>(seed),
+    std::printf("arm %d: predicted wall of %.0f N/m, true %.0f\n", static_cast<int>(seed),
                 told->stiffest_wall, true_of->stiffest_wall);
   }
   EXPECT_LT(wall, 0.1) << "arm " << seed;
@@ -189,8 +189,8 @@ TEST(TwinPrediction, MatchesTheIdentifiedArm) {
   }
 }
 
-TEST(TwinPrediction, OfAnIdentifiedArmBehindCablesHoldsAsWell) {
-  if (!support::long_form()) GTEST_SKIP() << "20 arms: in the long form alone";
+TEST(TwinPrediction, HoldsForArmsBehindCables) {
+  if (!support::long_form()) GTEST_SKIP() << "20 arms: only in the long form";
   constexpr int kArms = 20;
   int written = 0;
   Worst worst;
@@ -207,8 +207,8 @@ TEST(TwinPrediction, OfAnIdentifiedArmBehindCablesHoldsAsWell) {
   EXPECT_GE(2 * written, kArms);
 }
 
-TEST(TwinPrediction, OfAnArmThatCogsHoldsAsWell) {
-  if (!support::long_form()) GTEST_SKIP() << "12 arms: in the long form alone";
+TEST(TwinPrediction, HoldsForArmsWithCogging) {
+  if (!support::long_form()) GTEST_SKIP() << "12 arms: only in the long form";
   constexpr int kArms = 12;
   Worst worst;
   for (std::uint64_t seed = 1; seed <= kArms; ++seed) {
@@ -229,8 +229,8 @@ TEST(TwinPrediction, OfAnArmThatCogsHoldsAsWell) {
   tell("hidden arms that cog", kArms, worst);
 }
 
-TEST(TwinPrediction, OfAnArmWhoseJointsRubHoldsAsWell) {
-  if (!support::long_form()) GTEST_SKIP() << "12 arms: in the long form alone";
+TEST(TwinPrediction, HoldsForArmsWithJointFriction) {
+  if (!support::long_form()) GTEST_SKIP() << "12 arms: only in the long form";
   constexpr int kArms = 12;
   Worst worst;
   for (int k = 0; k < kArms; ++k) {
@@ -243,7 +243,7 @@ TEST(TwinPrediction, OfAnArmWhoseJointsRubHoldsAsWell) {
   tell("hidden arms whose joints rub", kArms, worst);
 }
 
-TEST(DropTrial, BouncesAsTheLawOfRestitutionSays) {
+TEST(DropTrial, FollowsTheLawOfRestitution) {
   scene::ArmFile arm = scene::load_arm("vintage_phantom").value();
   arm.simulated.plant.coulomb = 0;
   arm.simulated.weight_B.setZero();
@@ -271,7 +271,7 @@ TEST(DropTrial, BouncesAsTheLawOfRestitutionSays) {
   }
 }
 
-TEST(DropTrial, SaysWhenNothingFallsOrBounces) {
+TEST(DropTrial, FailsIfNothingFallsOrBounces) {
   scene::ArmFile arm = scene::load_arm("vintage_phantom").value();
   stability::DropTrial trial;
   trial.pull = 0.5 * arm.simulated.plant.coulomb;

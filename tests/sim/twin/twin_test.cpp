@@ -73,7 +73,7 @@ TwinComparison compared(const session::Recording& recording, const scene::ArmFil
   return result->comparison;
 }
 
-TEST(Twin, OfTheSameConstantsRelivesTheMotionToTheEncodersSteps) {
+TEST(Twin, SameConstantsReproduceTheMotion) {
   for (std::uint64_t seed = 1; seed <= arms_of(5); ++seed) {
     const HiddenArm arm = hidden_arm(seed);
     const auto recording = recording_of(arm.file, "vintage_phantom", seed);
@@ -135,7 +135,7 @@ TEST(Twin, NamesTheConstantThatIsWrong) {
   }
 }
 
-TEST(Twin, OfAnArmWhoseJointsRubRelivesItsMotionToTheEncodersSteps) {
+TEST(Twin, ArmWithJointFrictionIsReproduced) {
   const HiddenArm arm = support::rigid_rubbing_arm(8000);
   const auto recording = recording_of(arm.file, "vintage_phantom", 1, 3);
   const TwinMotion motion = twin_motion(recording, arm.file).value();
@@ -148,7 +148,7 @@ TEST(Twin, OfAnArmWhoseJointsRubRelivesItsMotionToTheEncodersSteps) {
 }
 
 TEST(Twin, NamesTheJointWhoseFrictionIsWrong) {
-  if (!support::long_form()) GTEST_SKIP() << "3 joints, a minute each: in the long form alone";
+  if (!support::long_form()) GTEST_SKIP() << "3 joints, a minute each: only in the long form";
   const HiddenArm arm = support::rigid_rubbing_arm(8000);
   const auto recording = recording_of(arm.file, "vintage_phantom", 1, 3);
   for (int joint = 0; joint < 3; ++joint) {
@@ -162,7 +162,7 @@ TEST(Twin, NamesTheJointWhoseFrictionIsWrong) {
   }
 }
 
-TEST(Twin, TellsHowManyPercentOfTheMotionItMisses) {
+TEST(Twin, ReportsTheMissedShareOfTheMotion) {
   const HiddenArm arm = hidden_arm(3);
   const auto recording = recording_of(arm.file, "vintage_phantom", 3, 6);
   scene::ArmFile heavier = arm.file;
@@ -207,7 +207,7 @@ TEST(Twin, ReportsThatOneConstantIsNotEnough) {
   }
 }
 
-TEST(Twin, RelivesAPartOfARecordingWithMissingTicksAndLateReports) {
+TEST(Twin, HandlesMissingTicksAndLateReports) {
   const HiddenArm arm = hidden_arm(4);
   auto recording = recording_of(arm.file, "vintage_phantom", 4, 8);
   auto& ticks = recording.ticks;
@@ -228,7 +228,7 @@ TEST(Twin, RelivesAPartOfARecordingWithMissingTicksAndLateReports) {
   EXPECT_NE(found.told.front().find("truncated"), std::string::npos);
 }
 
-TEST(Twin, OfAPolhemIsAsNear) {
+TEST(Twin, PolhemIsReproducedEquallyWell) {
   scene::ArmFile file = scene::load_arm("polhem").value();
   const auto recording = recording_of(file, "polhem", 5, 4);
   const TwinComparison found = compared(recording, file);
@@ -238,7 +238,7 @@ TEST(Twin, OfAPolhemIsAsNear) {
   EXPECT_EQ(heavier.remedies.front().key, "simulation.tip.mass");
 }
 
-TEST(Twin, RefusesWhatItCannotCompare) {
+TEST(Twin, RefusesUnsuitableRecordings) {
   const HiddenArm arm = hidden_arm(6);
   const auto recording = recording_of(arm.file, "vintage_phantom", 6, 4);
   const auto refused = [&](const std::function<void(session::Recording&)>& change,

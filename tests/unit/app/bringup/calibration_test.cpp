@@ -75,7 +75,7 @@ TEST_F(CalibrationTest, FindsHomeAndSignsOfAnyArmFromThreeMovements) {
   }
 }
 
-TEST_F(CalibrationTest, RefusesMovementsThatSayNothing) {
+TEST_F(CalibrationTest, RefusesAmbiguousMovements) {
   const scene::ArmFile file = vintage();
   const auto home = reading_at(file, {0, 0, 0});
   const auto still =
@@ -89,7 +89,7 @@ TEST_F(CalibrationTest, RefusesMovementsThatSayNothing) {
   EXPECT_NE(unclear.error().message.find("do not tell"), std::string::npos);
 }
 
-TEST_F(CalibrationTest, IsKeptPerArmAndComesBackUnchanged) {
+TEST_F(CalibrationTest, IsStoredPerArmAndReadUnchanged) {
   const scene::Calibration kept{
       .home_counts = {12, -7700, 0}, .encoder_sign = {-1, 1, -1}, .motor_sign = {1, -1, -1}};
   EXPECT_FALSE(scene::load_calibration("A/../B 1")->has_value());
@@ -127,7 +127,7 @@ TEST_F(CalibrationTest, FeelCheckPassesAGoodArmAndTimesItsWatchdog) {
   }
 }
 
-TEST_F(CalibrationTest, FeelCheckEndsAtTheFirstStepThatIsLeft) {
+TEST_F(CalibrationTest, FeelCheckEndsAtASkippedStep) {
   auto bench = BenchArm::open(vintage(), std::nullopt, "", feel_check_hand({0, 0, 0}),
                               scene::kFeelCheckForceMax);
   ASSERT_TRUE(bench);
@@ -226,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(Arms, FeelCheckOfAMiswiredArm,
                                   std::get<1>(instance.param).name;
                          });
 
-TEST_F(CalibrationTest, FeelCheckPassesEveryGoodArmAndPushesNoHarder) {
+TEST_F(CalibrationTest, FeelCheckPassesGoodArmsWithinItsLimit) {
   for (const char* arm : kArmFiles) {
     SCOPED_TRACE(arm);
     const auto file = scene::load_arm(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
@@ -245,7 +245,7 @@ TEST_F(CalibrationTest, FeelCheckPassesEveryGoodArmAndPushesNoHarder) {
   }
 }
 
-TEST_F(CalibrationTest, FeelCheckSaysThatAnArmHasNoWatchdog) {
+TEST_F(CalibrationTest, FeelCheckReportsAMissingWatchdog) {
   scene::ArmFile careless = vintage();
   careless.simulated.firmware.watchdog_ns = INT64_MAX / 4;
   bool prompted_all = false;

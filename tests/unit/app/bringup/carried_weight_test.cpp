@@ -123,7 +123,7 @@ WholeRun run(double carried, Law law = {}) {
   return run_in(files(carried), law);
 }
 
-TEST(CarriedWeight, LetsATipFloatThatFallsWithoutIt) {
+TEST(CarriedWeight, KeepsAHeavyTipInPlace) {
   const WholeRun falls = run(0), floats = run(kWeight);
   EXPECT_LT(falls.seen.lowest, -0.03);
   // It sinks until the soft start passes the part of the weight that friction does not hold.
@@ -138,7 +138,7 @@ TEST(CarriedWeight, LetsATipFloatThatFallsWithoutIt) {
   EXPECT_EQ(session::summary(falls.figures).find("of the arm"), std::string::npos);
 }
 
-TEST(CarriedWeight, LetsLinksFloatInEachPoseThatFallWithoutIt) {
+TEST(CarriedWeight, KeepsHeavyLinksInPlaceInEachPose) {
   double least = 1, most = 0;  // N
   for (const char* at : {"[0, 0, 0]", "[0.04, 0.03, 0.05]", "[-0.03, -0.05, 0.04]"}) {
     const WholeRun falls = run_in(files(0, true, at)), floats = run_in(files(1, true, at));
@@ -171,7 +171,7 @@ TEST(CarriedWeight, LinksTakeAtMostAThirdOfTheGateForce) {
                                "in the middle of the workspace"));
 }
 
-TEST(CarriedWeight, CountsTowardsTheForceLimitAndNeverGoesBeyondIt) {
+TEST(CarriedWeight, CountsTowardsTheForceLimit) {
   const auto up = [](const driver::DeviceState&) noexcept {
     return driver::ForceCommand{.f_T_W = {0, 0, 5}, .touch = {}};
   };
@@ -181,7 +181,7 @@ TEST(CarriedWeight, CountsTowardsTheForceLimitAndNeverGoesBeyondIt) {
   EXPECT_GT(pushed.figures.gate.limited, 0U);
 }
 
-TEST(CarriedWeight, WrongOneDoesNotMakeAFreeTipRunAway) {
+TEST(CarriedWeight, WrongValueDoesNotMakeAFreeTipRunAway) {
   // Twenty times the arm's weight; without the check the tip would reach 3 m/s over 0.3 m.
   const WholeRun wrong = run(20 * kWeight);
   EXPECT_LT(wrong.seen.highest, 0.11);
@@ -197,7 +197,7 @@ TEST(CarriedWeight, IsGoneWithEveryOtherForceAfterAFault) {
   EXPECT_EQ(run_broken.seen.last.f_sent_W[2], 0);
 }
 
-TEST(CarriedWeight, IsAThirdOfTheGatesForceAtTheMost) {
+TEST(CarriedWeight, IsAtMostAThirdOfTheGateForce) {
   EXPECT_TRUE(support::refuses(scene::load_arm(files(2) / "arm.yaml"), "a third of the gate's"));
   EXPECT_TRUE(scene::load_arm(files(1.6) / "arm.yaml").ok());
   EXPECT_EQ(scene::load_arm("polhem").value().carried_weight, 0);

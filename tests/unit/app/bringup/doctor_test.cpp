@@ -60,20 +60,20 @@ class DoctorTest : public ::testing::Test {
   SystemInfo system_;
 };
 
-TEST_F(DoctorTest, FindsNothingWrongWithAMachineOnWhichAllIsWell) {
+TEST_F(DoctorTest, ReportsNoProblemOnAGoodMachine) {
   plug_woody();
   plug_falcon();
   EXPECT_EQ(troubles(), 0u);
 }
 
-TEST_F(DoctorTest, MissesTheRule) {
+TEST_F(DoctorTest, ReportsAMissingRule) {
   plug_woody();
   std::filesystem::remove(usb_.root() / "etc/udev/rules.d/70-thimble.rules");
   EXPECT_EQ(finding("rule is not installed").health, Health::kProblem);
   EXPECT_NE(finding("rule is not installed").mend.find("udevadm"), std::string::npos);
 }
 
-TEST_F(DoctorTest, SaysWhyANodeMayNotBeOpened) {
+TEST_F(DoctorTest, ExplainsMissingAccess) {
   plug_woody();
   std::filesystem::remove(usb_.root() / "dev/hidraw3");  // root has access to every existing file
   system_.in_plugdev = false;
@@ -85,7 +85,7 @@ TEST_F(DoctorTest, SaysWhyANodeMayNotBeOpened) {
   EXPECT_NE(finding("have no access to").what.find("rule is missing"), std::string::npos);
 }
 
-TEST_F(DoctorTest, NamesADriverThatIsMissingOrInTheWay) {
+TEST_F(DoctorTest, ReportsMissingAndConflictingDrivers) {
   usb_.plug("1-1", "1234", "0006", "WH01", 1, 2);
   EXPECT_NE(finding("no kernel driver is bound to it").mend.find("modprobe usbhid"),
             std::string::npos);
@@ -98,7 +98,7 @@ TEST_F(DoctorTest, NamesADriverThatIsMissingOrInTheWay) {
   EXPECT_NE(finding("ftdi_sio").mend.find("1-2:1.0"), std::string::npos);
 }
 
-TEST_F(DoctorTest, SeesWhatKeepsTheVendorsLibraryFromATouch) {
+TEST_F(DoctorTest, FindsProblemsOfTheTouchLibrary) {
   const auto about = [&](const std::string& words) {
     const auto findings = examine(system_);
     return std::any_of(findings.begin(), findings.end(), [&](const Finding& found) {
@@ -117,7 +117,7 @@ TEST_F(DoctorTest, SeesWhatKeepsTheVendorsLibraryFromATouch) {
   EXPECT_FALSE(about("libncurses"));
 }
 
-TEST_F(DoctorTest, SeesPowerSavingAndHubs) {
+TEST_F(DoctorTest, FindsPowerSavingAndHubs) {
   plug_woody("1-4.2");
   usb_.write(usb_.device_folder("1-4.2") / "power/control", "auto");
   usb_.plug("1-4", "05e3", "0608", "", 1, 9, "12");
@@ -128,7 +128,7 @@ TEST_F(DoctorTest, SeesPowerSavingAndHubs) {
             std::string::npos);
 }
 
-TEST_F(DoctorTest, SeesTheKernelsRealTimeLimits) {
+TEST_F(DoctorTest, FindsTheKernelsRealTimeLimits) {
   plug_woody();
   system_.real_time_priority_max = 0;
   EXPECT_NE(finding("real-time priority").mend.find("rtprio 80"), std::string::npos);
@@ -155,7 +155,7 @@ TEST_F(DoctorTest, UnknownBoardGetsItsOwnUdevRule) {
   EXPECT_NE(unknown.what.find("16c0:0486, \"Teensyduino RawHID\""), std::string::npos);
   EXPECT_NE(unknown.mend.find("--device 7654321"), std::string::npos);
   EXPECT_NE(unknown.mend.find("board: teensy_raw_hid_64"), std::string::npos);
-  EXPECT_EQ(unknown.mend.find("udev"), std::string::npos) << "it may be opened already";
+  EXPECT_EQ(unknown.mend.find("udev"), std::string::npos) << "access is already granted";
   std::filesystem::remove(usb_.root() / "dev/hidraw5");
   unknown = finding("board of unknown kind");
   EXPECT_NE(unknown.mend.find("echo 'SUBSYSTEM==\"hidraw\", ATTRS{idVendor}==\"16c0\", "
@@ -166,7 +166,7 @@ TEST_F(DoctorTest, UnknownBoardGetsItsOwnUdevRule) {
   EXPECT_NE(unknown.mend.find("/etc/udev/rules.d/71-"), std::string::npos);
 }
 
-TEST_F(DoctorTest, NamesABoardWithoutANameOfItsOwnByItsSocket) {
+TEST_F(DoctorTest, NamesABoardWithoutSerialByItsSocket) {
   usb_.plug("1-1.4", "1234", "0006", "0123456789", 1, 4);
   usb_.bind("1-1.4", 0, "usbhid");
   usb_.add_hidraw("1-1.4", 0, "hidraw5", 14);
@@ -176,7 +176,7 @@ TEST_F(DoctorTest, NamesABoardWithoutANameOfItsOwnByItsSocket) {
   EXPECT_NE(unknown.mend.find("KERNELS==\"1-1.4\""), std::string::npos);
 }
 
-TEST_F(DoctorTest, SaysThatABoardOfAFormNoArmHasIsNeverOpened) {
+TEST_F(DoctorTest, BoardOfUnknownFormIsNeverOpened) {
   usb_.plug("1-3", "1234", "0006", "X1", 1, 4);
   usb_.bind("1-3", 0, "usbhid");
   usb_.add_hidraw("1-3", 0, "hidraw5", 64);
@@ -191,7 +191,7 @@ TEST_F(DoctorTest, NamesTheProgramThatHasTheArm) {
   EXPECT_EQ(finding("steam (process 77)").health, Health::kProblem);
 }
 
-TEST_F(DoctorTest, KnowsARealTimeKernelByEitherOfItsSigns) {
+TEST_F(DoctorTest, DetectsARealTimeKernelByEitherFile) {
   plug_woody();
   EXPECT_EQ(finding("PREEMPT_RT").health, Health::kGood);
   usb_.write("proc/sys/kernel/version", "#1 SMP PREEMPT_DYNAMIC Debian 6.1");
@@ -201,7 +201,7 @@ TEST_F(DoctorTest, KnowsARealTimeKernelByEitherOfItsSigns) {
   EXPECT_EQ(finding("PREEMPT_RT").health, Health::kGood);
 }
 
-TEST_F(DoctorTest, SeesAGovernorThatSlowsAProcessorDown) {
+TEST_F(DoctorTest, FindsASlowFrequencyGovernor) {
   plug_woody();
   EXPECT_EQ(finding("full speed").health, Health::kGood);
   usb_.write(kCpus + "cpu1/cpufreq/scaling_governor", "powersave");
@@ -218,19 +218,19 @@ TEST_F(DoctorTest, FindsDeepProcessorSleepStates) {
   EXPECT_EQ(finding("take 200 us to wake").health, Health::kAdvice);
   EXPECT_EQ(troubles(), 1u);
   usb_.write(kCpus + "cpu0/cpuidle/state1/disable", "1");
-  EXPECT_EQ(troubles(), 1u) << "the other one still sleeps";
+  EXPECT_EQ(troubles(), 1u) << "the sleep state of the other processor is still enabled";
   usb_.write(kCpus + "cpu1/cpuidle/state1/disable", "1");
   EXPECT_EQ(troubles(), 0u);
 }
 
-TEST_F(DoctorTest, PassesOverWhatTheKernelDoesNotTell) {
+TEST_F(DoctorTest, SkipsValuesThatTheKernelDoesNotReport) {
   plug_woody();
   std::filesystem::remove_all(usb_.root() / kCpus);
   std::filesystem::remove(usb_.root() / "proc/sys/kernel/version");
   EXPECT_EQ(troubles(), 0u);
 }
 
-TEST_F(DoctorTest, SaysSoWhenNothingIsPluggedInOrItsProtocolIsSecret) {
+TEST_F(DoctorTest, ReportsMissingAndUnsupportedArms) {
   EXPECT_EQ(finding("No supported arm").health, Health::kAdvice);
   usb_.plug("1-5", "1451", "0402", "FD", 1, 6);
   EXPECT_EQ(finding("not public").health, Health::kAdvice);
@@ -239,7 +239,7 @@ TEST_F(DoctorTest, SaysSoWhenNothingIsPluggedInOrItsProtocolIsSecret) {
   EXPECT_NE(finding("Haply Inverse3").what.find("not public"), std::string::npos);
 }
 
-TEST(DoctorLog, SaysWhereTheLogIsAndWhetherItCanBeWritten) {
+TEST(DoctorLog, ReportsLocationAndWriteAccess) {
   const auto folder = support::scratch_folder() / "doctor_log";
   std::filesystem::create_directories(folder);
   const Finding good = examine_log(folder / "to" / "be" / "made.log");

@@ -76,7 +76,7 @@ TEST_P(FeelCheckOfAShippedFile, PassesItsOwnBoard) {
   EXPECT_LE(found.force_max, scene::kFeelCheckForceMax);
 }
 
-TEST_P(FeelCheckOfAShippedFile, SeesABoardWithoutWatchdog) {
+TEST_P(FeelCheckOfAShippedFile, DetectsABoardWithoutWatchdog) {
   scene::ArmFile file = shipped(GetParam().file);
   file.simulated.firmware.watchdog_ns = INT64_MAX / 4;
   const Checked found = check(file);
@@ -119,7 +119,7 @@ TEST(FeelCheck, PassesArmsOfHighDryFriction) {
 }
 
 // 0.49 N minus 0.35 N of friction moves a tip in a hand by a few encoder steps.
-TEST(FeelCheck, NamesFrictionThatLeavesLittleOfItsStrongestPush) {
+TEST(FeelCheck, ReportsFrictionNearItsStrongestPush) {
   for (const char* name : {"vintage_phantom", "woodenhaptics", "polhem", "falcon"}) {
     const Checked found = check(rubbing(name, 0.35));
     EXPECT_TRUE(found.passed() || found.text().find("dry friction") != std::string::npos)
@@ -129,21 +129,21 @@ TEST(FeelCheck, NamesFrictionThatLeavesLittleOfItsStrongestPush) {
   }
 }
 
-TEST(FeelCheck, SaysFrictionWhereNothingMoves) {
+TEST(FeelCheck, ReportsFrictionIfNothingMoves) {
   const Checked found = check(rubbing("vintage_phantom", 0.7));
   EXPECT_FALSE(found.passed());
   EXPECT_NE(found.text().find("dry friction"), std::string::npos) << found.text();
   EXPECT_EQ(found.text().find("does not pull"), std::string::npos) << found.text();
 }
 
-TEST(FeelCheck, AsksWhereFrictionHidesTheWatchdog) {
+TEST(FeelCheck, AsksIfFrictionHidesTheWatchdog) {
   const Checked found = check(rubbing("vintage_phantom", 0.35));
   EXPECT_EQ(found.asked, 1);
   EXPECT_NE(found.results.back().text.find("You answered that the arm stopped"), std::string::npos)
       << found.text();
 }
 
-TEST(FeelCheck, FailsWhereNobodyAnswers) {
+TEST(FeelCheck, FailsWithoutAnAnswer) {
   const Checked found = check(rubbing("vintage_phantom", 0.35), false);
   ASSERT_EQ(found.results.size(), kFeelChecks);
   EXPECT_FALSE(found.results.back().passed) << found.text();
@@ -157,7 +157,7 @@ TEST(FeelCheck, NamesADeadMotorBehindHighFriction) {
   EXPECT_NE(found.text().find("Motor 2 does not pull"), std::string::npos) << found.text();
 }
 
-TEST(FeelCheck, SeesAMissingWatchdogBehindHighFriction) {
+TEST(FeelCheck, DetectsAMissingWatchdogBehindHighFriction) {
   scene::ArmFile file = rubbing("woodenhaptics", 0.3);
   file.simulated.firmware.watchdog_ns = INT64_MAX / 4;
   const Checked found = check(file);

@@ -60,7 +60,7 @@ TEST_F(RealArmTermsTest, NamedFileOverridesTheCalibration) {
   ASSERT_TRUE(kept) << kept.error().message;
   EXPECT_EQ(kept->path.stem(), "polhem");
   EXPECT_TRUE(holds(kept->why, "P1.yaml")) << kept->why;
-  EXPECT_EQ(kept->file.model.encoders[1].home_counts, 0) << "its calibration is in it";
+  EXPECT_EQ(kept->file.model.encoders[1].home_counts, 0) << "the calibration is included";
 
   // The signs of one arm in the file of another would drive the motors in the wrong direction.
   const scene::RealArmSearch vintage{.arm_file = kArms / "vintage_phantom.yaml"};
@@ -79,7 +79,7 @@ TEST_F(RealArmTermsTest, NamedFileOverridesTheCalibration) {
   EXPECT_TRUE(holds(file_for(arm), "No installed arm file is called gone"));
 }
 
-TEST_F(RealArmTermsTest, AFileOfAnotherWireIsRefused) {
+TEST_F(RealArmTermsTest, FileForAnotherWireIsRefused) {
   const auto found =
       scene::find_real_arm_file(plug(ArmKind::kWoody, "W1"), {.arm_file = kArms / "falcon.yaml"});
   ASSERT_FALSE(found);
@@ -146,7 +146,7 @@ TEST_F(RealArmTermsTest, ForeignFileOnlyTightensLimits) {
   }
 }
 
-TEST_F(RealArmTermsTest, AFileFromElsewhereMaySayNothingElseOfTheArm) {
+TEST_F(RealArmTermsTest, ForeignFileCannotChangeTheArm) {
   const FoundArm arm = plug(ArmKind::kWoody, "W1");
   struct Case {
     const char *was, *by, *section;
@@ -175,7 +175,7 @@ TEST_F(RealArmTermsTest, AFileFromElsewhereMaySayNothingElseOfTheArm) {
   }
 }
 
-TEST_F(RealArmTermsTest, AnArmOfOnesOwnIsInstalledOnce) {
+TEST_F(RealArmTermsTest, CustomArmIsInstalledOnce) {
   const FoundArm arm = plug(ArmKind::kPolhem, "P1");
   const fs::path file = copy_of("polhem", "name: polhem", "name: my_arm");
   const auto before = scene::find_real_arm_file(arm, {.arm_file = file});
@@ -189,7 +189,7 @@ TEST_F(RealArmTermsTest, AnArmOfOnesOwnIsInstalledOnce) {
   ASSERT_TRUE(after) << after.error().message;
   EXPECT_EQ(after->file.limits.force_max, 3);
   EXPECT_TRUE(after->told.empty());
-  EXPECT_EQ(scene::find_arm_file("mine")->string(), mine.string()) << "it is known by name";
+  EXPECT_EQ(scene::find_arm_file("mine")->string(), mine.string()) << "the arm is found by name";
 }
 
 TEST_F(RealArmTermsTest, UserFileReplacesTheShippedOne) {
@@ -263,7 +263,7 @@ TEST_F(RealArmTermsTest, SceneCannotRemoveTheEnergyStage) {
   EXPECT_EQ(simulated->energy, EnergyStage::kBounding);
 }
 
-TEST_F(RealArmTermsTest, AScenesOwnArmFileTightensOnly) {
+TEST_F(RealArmTermsTest, SceneArmFileOnlyTightensLimits) {
   const fs::path folder = home_ / "scene", file = folder / "ball.yaml";
   std::string own = text_of(kArms / "vintage_phantom.yaml");
   own = with(own, "  force: 5 ", "  force: 100 ");
@@ -298,7 +298,7 @@ TEST_F(RealArmTermsTest, AScenesOwnArmFileTightensOnly) {
   EXPECT_FALSE(scene::put_on_terms(*scene, file, *terms));
 }
 
-TEST_F(RealArmTermsTest, ARunWithARealArmNeedsTerms) {
+TEST_F(RealArmTermsTest, RealArmRunNeedsTerms) {
   const fs::path file = home_ / "scene" / "ball.yaml";
   write(file, ball((kArms / "vintage_phantom.yaml").string(), ""));
   session::SessionOptions options;
@@ -308,7 +308,7 @@ TEST_F(RealArmTermsTest, ARunWithARealArmNeedsTerms) {
   EXPECT_TRUE(holds(session.error().message, "terms")) << session.error().message;
 }
 
-TEST_F(RealArmTermsTest, ABoardWithAnArmsNameIsAskedForItsModel) {
+TEST_F(RealArmTermsTest, KnownLineBoardIsAskedForItsModel) {
   const support::LineBoard board(2);
   if (board.node().empty()) GTEST_SKIP() << "this machine has no pseudo-terminals";
   FoundArm arm = plug(ArmKind::kHfabLine, "V1", 0x0279, "Haptikfabriken vintage");
@@ -321,7 +321,7 @@ TEST_F(RealArmTermsTest, ABoardWithAnArmsNameIsAskedForItsModel) {
   EXPECT_GT(board.messages(), 0);
 }
 
-TEST_F(RealArmTermsTest, TheGateOfASessionStandsOnTheTerms) {
+TEST_F(RealArmTermsTest, SessionGateFollowsTheTerms) {
   const support::LineBoard board(2);
   if (board.node().empty()) GTEST_SKIP() << "this machine has no pseudo-terminals";
   FoundArm arm = plug(ArmKind::kHfabLine, "V1", 0x0279, "Haptikfabriken vintage");

@@ -45,7 +45,7 @@ class SleepLockTest : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(SleepLockTest, IsHeldForAsLongAsItLives) {
+TEST_F(SleepLockTest, IsHeldDuringItsLifetime) {
   // Like the real program: skips the options, runs the command, and ends with it.
   stand_in("echo \"$*\" >" + (folder_ / "asked").string() +
            "\nwhile [ \"${1#--}\" != \"$1\" ]; do shift; done\n\"$@\"\necho over >" +
@@ -61,21 +61,21 @@ TEST_F(SleepLockTest, IsHeldForAsLongAsItLives) {
   EXPECT_EQ(written("over"), "over\n");
 }
 
-TEST_F(SleepLockTest, SaysSoWhereItIsRefused) {
+TEST_F(SleepLockTest, ReportsARefusal) {
   stand_in("echo 'Failed to inhibit: Access denied' >&2\nexit 1\n");
   const SleepLock lock;
   EXPECT_FALSE(lock.held());
   EXPECT_NE(lock.note().find("logind gave no lock"), std::string::npos);
 }
 
-TEST_F(SleepLockTest, SaysSoWhereItIsNotInstalled) {
+TEST_F(SleepLockTest, ReportsAMissingProgram) {
   setenv("PATH", folder_.c_str(), 1);
   const SleepLock lock;
   EXPECT_FALSE(lock.held());
   EXPECT_NE(lock.note().find("not installed"), std::string::npos);
 }
 
-TEST_F(SleepLockTest, DoesNotWaitForOneThatHangs) {
+TEST_F(SleepLockTest, DoesNotWaitForAHangingProgram) {
   stand_in("exec sleep 60\n");
   const auto begin = std::chrono::steady_clock::now();
   { const SleepLock lock; }

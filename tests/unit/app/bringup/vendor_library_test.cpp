@@ -61,7 +61,7 @@ class VendorLibraryTest : public RealArmTermsTest {
   driver::WallClock clock_{0};
 };
 
-TEST_F(VendorLibraryTest, MakesAnArmOfABoardOfForceDimensions) {
+TEST_F(VendorLibraryTest, OpensAForceDimensionArm) {
   ASSERT_TRUE(kNamed);
   usb_.plug("1-1", "1451", "0402", "FD1", 1, 2);
   const FoundArm arm = only();
@@ -86,7 +86,7 @@ TEST_F(VendorLibraryTest, MakesAnArmOfABoardOfForceDimensions) {
   EXPECT_FALSE(open(arm, "touch")) << "another library's file";
 }
 
-TEST_F(VendorLibraryTest, MakesAnArmOfATouch) {
+TEST_F(VendorLibraryTest, OpensATouch) {
   usb_.plug("1-1", "2988", "0302", "TT1", 1, 2);
   usb_.add_tty("1-1", 0, "ttyACM0");
   const FoundArm arm = only();
