@@ -76,8 +76,8 @@ std::vector<std::string> not_tested(const scene::ArmFile& file, const HilOptions
   }
   if (options.known_mass == 0 || !ran("constants")) {
     all.emplace_back(
-        "Forces in newtons and the tilt of the base: motion alone shows only ratios of mass and "
-        "torque. Hang a known mass on the tip to test both (--attended --known-mass 0.03).");
+        "Forces in newtons and the tilt of the base: motion shows only ratios of mass and torque. "
+        "Hang a known mass on the tip to test both (--attended --known-mass 0.03).");
   }
   return all;
 }

@@ -129,7 +129,7 @@ TEST(HardCaseFrictionStop, IsSilentAtAnyDelay) {
   record_hard_case(14, kStops, "<= force above 50 Hz, RMS", 1e3 * most_force, 1, "mN");
   record_hard_case(14, kStops, "<= way above 50 Hz, RMS", 1e6 * most_way, 0.05, "um");
   record_hard_case(14, kStops, "== changes of sign per second", most_changes, 0, "1/s");
-  record_hard_case(14, kStops, "> force that it goes on holding", least_held, 0.25, "N");
+  record_hard_case(14, kStops, "> force that it continues to hold", least_held, 0.25, "N");
 }
 
 // [PHYSICS 7] proposes that the last second flickers no more than the first. No limit cycle

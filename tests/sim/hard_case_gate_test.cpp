@@ -153,7 +153,7 @@ TEST(HardCaseController, GuardBookingTheRequestedForceCreeps) {
   // in.
   EXPECT_LE(*std::max_element(good.begin() + 1, good.end()), 1.1 * good.front());
   EXPECT_GT(crept, 1.2);
-  record_hard_case(11, "guard: asked force booked in place of the sent one",
+  record_hard_case(11, "guard: requested force booked instead of the sent one",
                    "> largest bounce over the first", crept, 1.2, "1");
 }
 

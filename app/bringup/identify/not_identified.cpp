@@ -15,9 +15,9 @@ using Sentences = std::vector<std::string>;
 void of_constants(const ArmConstants& found, Sentences& all) {
   if (!found.absolute) {
     all.emplace_back(
-        "Scale: motion alone shows only ratios of mass and force, so the mean torque constant of "
-        "the arm file was assumed to be correct. Its error affects every constant except the "
-        "delay. A known mass on the tip (--known-mass) measures it.");
+        "Scale: motion shows only ratios of mass and force, so the mean torque constant of the arm "
+        "file was assumed to be correct. Its error affects every constant except the delay. A "
+        "known mass on the tip (--known-mass) measures it.");
   }
   if (found.viscous.holds(0)) {
     all.push_back(fmt::format("Viscous friction: hidden by dry friction; below {:.3g} N s/m.",

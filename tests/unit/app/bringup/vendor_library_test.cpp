@@ -130,7 +130,7 @@ TEST_F(VendorLibraryTest, DoctorExplainsVendorLibraryAccess) {
     for (const Finding& found : examine(system)) {
       if (holds(found.what, words)) return found.mend;
     }
-    return std::string("nobody says: " + words);
+    return std::string("no finding contains: " + words);
   };
   // The vendors' set-up steps are not published, and our rule does not cover their arms.
   const std::string touch = mend("TT1: you have no access to /dev/ttyACM0");
