@@ -13,9 +13,11 @@ namespace thimble::bringup {
 namespace {
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
-constexpr std::int64_t kWait_ns = 5'000'000;  // wait for a report, before zero is sent again
+// Max. wait for a report before zero force is sent again
+constexpr std::int64_t kWait_ns = 5'000'000;
 constexpr std::int64_t kLook_ns = 20'000;
-constexpr std::int64_t kSleptThrough_ns = 10 * kPeriod_ns;  // as in a servo loop
+// Delay of a tick from which the computer may have slept, as in a servo loop
+constexpr std::int64_t kSleptThrough_ns = 10 * kPeriod_ns;
 constexpr double kAlign_s = 0.25;            // s, duration of timing reports before the first tick
 constexpr double kEven = 1e-6;               // s, below which reports have the same phase
 constexpr double kAlignedMost = 0.8;         // of a period; above it, phases are not used
@@ -133,7 +135,8 @@ void BenchArm::align() {
   const std::int64_t first_ns = clock_->now_ns();
   constexpr double kPeriod = 1e-9 * kPeriod_ns;
   const auto heard = [&](double time) {
-    // Nearest to the earlier ones, so that phases around the wrap of a period stay together.
+    // Shifted by whole periods to the nearest of the earlier phases, so that phases around the wrap
+    // of a period stay together.
     const double middle = phases_middle(phases);
     const double since = time - 1e-9 * static_cast<double>(first_ns);
     phases.push_back(middle + std::remainder(since - middle, kPeriod));
@@ -142,7 +145,7 @@ void BenchArm::align() {
   if (phases.size() < 50) return;
   const auto [least, most] = std::minmax_element(phases.begin(), phases.end());
   const double spread = *most - *least;
-  // Reports with another period, or of an arm that sends only when asked, have any phase.
+  // The phase is random if reports have another period, or if the arm sends only when asked.
   if (spread < kEven || spread > kAlignedMost * kPeriod) return;
   const double behind = *most + 0.1 * spread;
   read_late_ = behind - phases_middle(phases);
@@ -164,7 +167,7 @@ void BenchArm::listen(double duration, const std::function<void(double)>& heard,
   while (clock_->now_ns() < end_ns && !stop.load(std::memory_order_relaxed) && !device_->lost()) {
     const std::int64_t now_ns = clock_->now_ns();
     if (device_->idle(now_ns, std::min(end_ns, now_ns + kWait_ns)).fresh) heard(now());
-    // A link that does not wait for its deadline is read again later.
+    // A link that returned before its deadline is read again later.
     if (clock_->now_ns() == now_ns) clock_->sleep_until_ns(now_ns + kLook_ns);
   }
 }
@@ -188,7 +191,7 @@ void BenchArm::stay_silent(double duration, const std::atomic<bool>& stop) {
   while (clock_->now_ns() < end_ns && !stop.load(std::memory_order_relaxed)) {
     clock_->sleep_until_ns(std::min(end_ns, clock_->now_ns() + kStep_ns));
   }
-  // Nothing else moves a simulated arm meanwhile; frames in flight stay there.
+  // Nothing else advances a simulated arm during this time; frames in flight stay in flight.
   if (simulation_) simulation_->settle(clock_->now_ns() - kStep_ns);
 }
 

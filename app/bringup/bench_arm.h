@@ -107,7 +107,8 @@ class BenchArm {
   bool real_ = false;
   double true_force_max_ = 0;
   LateTicks late_;
-  std::optional<std::int64_t> phase_ns_;                // a time at which a tick is due; empty: any
+  // Time at which a tick is due; empty: no alignment with reports.
+  std::optional<std::int64_t> phase_ns_;
   double read_late_ = 0;                                // s
   std::unique_ptr<driver::CpuLatencyRequest> latency_;  // for a real arm
   std::function<void(const driver::TickRecord&)> sink_;

@@ -25,18 +25,19 @@ std::string what_it_may_be(const FoundArm& board) {
   const std::string ids = fmt::format("{:04x}:{:04x}", board.vendor_id, board.product_id);
   if (board.board != BoardKind::kOther) {
     return "a board of unknown kind (" + ids + ", " + product +
-           "): any program may run on it, and an arm could prove nothing before it is written to. "
-           "It is used only by name.";
+           "): its firmware cannot be identified without writing to it. It is used only if "
+           "--device names it.";
   }
-  if (board.node.empty()) return "its reports cannot be seen without a driver.";
+  if (board.node.empty())
+    return "its reports cannot be read because no kernel driver is bound to it.";
   return fmt::format(
-      "a board of unknown kind ({}, {}): its reports have {} bytes in and {} out, as no arm's do. "
-      "It is never opened.",
+      "a board of unknown kind ({}, {}): its reports of {} bytes in and {} bytes out match no "
+      "known arm. It is never opened.",
       ids, product, static_cast<int>(board.hid.in_bytes), static_cast<int>(board.hid.out_bytes));
 }
 
 std::string how_to_use(const FoundArm& board) {
-  if (board.board == BoardKind::kOther) return "If it should be an arm, look at its firmware.";
+  if (board.board == BoardKind::kOther) return "If it is an arm, check its firmware.";
   const std::string kind(name(board.board));
   std::string advice;
   if (!board.accessible) {
@@ -47,7 +48,7 @@ std::string how_to_use(const FoundArm& board) {
     advice = "If it is your arm: ";
   }
   return advice + "thimble run SCENE --device " + board.name() +
-         " --arm FILE, where the file says `board: " + kind + "`";
+         " --arm FILE, with a file that contains `board: " + kind + "`";
 }
 
 std::string udev_line(const FoundArm& board) {

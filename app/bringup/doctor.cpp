@@ -72,7 +72,7 @@ class Examination {
         return;
       }
     }
-    note(Health::kProblem, "The udev rule is not installed, so only root may open an arm.",
+    note(Health::kProblem, "The udev rule is not installed; only root may open an arm.",
          install_rule());
   }
 
@@ -83,8 +83,8 @@ class Examination {
       return;
     }
     if (arms->empty()) {
-      note(Health::kAdvice, "No arm that Thimble knows is plugged in on USB.",
-           "Plug it in and switch it on; `lsusb` shows whether the computer sees it at all.");
+      note(Health::kAdvice, "No supported arm was found on USB.",
+           "Plug it in and switch it on; `lsusb` lists it if the computer detects it.");
     }
     arm_ = std::any_of(arms->begin(), arms->end(), [](const FoundArm& arm) {
       return arm.certainty != driver::Certainty::kUnsupported;
@@ -99,7 +99,8 @@ class Examination {
   void look_at(const FoundArm& arm) {
     const std::string name = arm.arm + " " + arm.name() + ": ";
     if (arm.certainty == driver::Certainty::kUnsupported) {
-      note(Health::kAdvice, name + "plugged in, but its protocol is not public.",
+      note(Health::kAdvice,
+           name + "plugged in, but not supported over USB because its protocol is not public.",
            mend_for_closed(arm));
       return;
     }
@@ -108,8 +109,8 @@ class Examination {
       return;
     }
     if (arm.board == BoardKind::kDhdLibrary || arm.board == BoardKind::kHdLibrary) {
-      note(Health::kGood,
-           name + "its vendor's library is here (" + arm.software + "). Untried on hardware.");
+      note(Health::kGood, name + "its vendor's library is installed (" + arm.software +
+                              "). Not tested on hardware.");
       findings_.push_back(examine_access(arm, system_.root));
       look_at_holder(arm, name);
       look_at_power(arm, name);
@@ -135,21 +136,23 @@ class Examination {
       case BoardKind::kTeensyRawHid64:
       case BoardKind::kOther:
         if (!arm.node.empty()) {
-          note(Health::kGood, name + "the kernel's HID driver has it as " + arm.node + ".");
+          note(Health::kGood, name + "the kernel's HID driver provides it as " + arm.node + ".");
         } else if (bound.empty()) {
-          note(Health::kProblem, name + "no kernel driver has it, so it has no hidraw node.",
+          note(Health::kProblem,
+               name + "no kernel driver is bound to it, so it has no hidraw node.",
                "sudo modprobe usbhid && sudo modprobe hid-generic, then plug it in again");
         } else {
           note(Health::kProblem,
-               name + "the kernel's driver " + bound + " has it, but it has no hidraw node.",
-               "Use a kernel with CONFIG_HIDRAW (Debian's has it), and plug it in again");
+               name + "the kernel driver " + bound + " is bound to it, but it has no hidraw node.",
+               "Use a kernel with CONFIG_HIDRAW, such as Debian's, then plug it in again");
         }
         return;
       case BoardKind::kTextLines:
         if (!arm.node.empty()) {
-          note(Health::kGood, name + "the kernel's serial driver has it as " + arm.node + ".");
+          note(Health::kGood, name + "the kernel's serial driver provides it as " + arm.node + ".");
         } else {
-          note(Health::kProblem, name + "no kernel driver has it, so it has no serial port.",
+          note(Health::kProblem,
+               name + "no kernel driver is bound to it, so it has no serial port.",
                "sudo modprobe cdc_acm, then plug it in again");
         }
         return;
@@ -167,37 +170,42 @@ class Examination {
     if (bound == "ftdi_sio") {
       const std::string latency = falcon_latency(arm);
       note(Health::kAdvice,
-           name + "the kernel's serial driver ftdi_sio has it" +
+           name + "the kernel's serial driver ftdi_sio is bound to it" +
                (latency.empty() ? "" : " with a latency timer of " + latency + " ms") +
-               "; Thimble takes it over (and sets 1 ms), other programs may be in the way.",
+               ". Thimble detaches the driver and sets 1 ms; other programs may need it detached "
+               "first.",
            "echo " + arm.sysfs.filename().string() +
                ":1.0 | sudo tee /sys/bus/usb/drivers/ftdi_sio/unbind");
     } else if (!bound.empty() && bound != "usbfs") {
-      note(Health::kProblem, name + "the kernel's driver " + bound + " has it.",
+      note(Health::kProblem, name + "the kernel driver " + bound + " is bound to it.",
            "echo " + arm.sysfs.filename().string() + ":1.0 | sudo tee /sys/bus/usb/drivers/" +
                bound + "/unbind");
     } else if (bound == "usbfs") {
       note(Health::kAdvice, name + "another program has it open.", "Close that program");
     } else {
-      note(Health::kGood, name + "no kernel driver is in the way.");
+      note(Health::kGood, name + "no kernel driver blocks access.");
     }
   }
 
   void look_at_access(const FoundArm& arm, const std::string& name) {
-    if (arm.node.empty()) return;  // reported above
+    if (arm.node.empty()) return;  // already reported above
     if (arm.accessible) {
-      note(Health::kGood, name + "you may open " + arm.node + ".");
+      note(Health::kGood, name + "you have access to " + arm.node + ".");
     } else if (!rule_) {
-      note(Health::kProblem, name + "you may not open " + arm.node + ": the rule is missing.",
+      note(Health::kProblem,
+           name + "you have no access to " + arm.node + ": the udev rule is missing.",
            install_rule());
     } else if (!system_.in_plugdev) {
       note(Health::kProblem,
-           name + "you may not open " + arm.node +
-               ": it was plugged in before the rule, or you are not the user at the screen.",
-           "Plug it in again; without a screen: sudo usermod -aG plugdev $USER, then log in again");
+           name + "you have no access to " + arm.node +
+               ": it was plugged in before the rule was installed, or you are not the user of the "
+               "local session.",
+           "Plug it in again; over a remote login: sudo usermod -aG plugdev $USER, then log in "
+           "again");
     } else {
       note(Health::kProblem,
-           name + "you may not open " + arm.node + " though rule and group are right.",
+           name + "you have no access to " + arm.node +
+               ", although the udev rule and your groups are correct.",
            "Plug it in again, or: sudo udevadm trigger");
     }
   }
@@ -214,7 +222,7 @@ class Examination {
 
   void look_at_power(const FoundArm& arm, const std::string& name) {
     if (read_line(arm.sysfs / "power/control") == "auto") {
-      note(Health::kAdvice, name + "the kernel may put it to sleep to save power.",
+      note(Health::kAdvice, name + "the kernel may suspend it to save power.",
            "echo on | sudo tee /sys/bus/usb/devices/" + arm.sysfs.filename().string() +
                "/power/control");
     }
@@ -230,11 +238,14 @@ class Examination {
     const std::string speed = read_line(arm.sysfs.parent_path() / hub / "speed");
     if (speed == "12" || speed == "1.5") {
       note(Health::kAdvice,
-           name + "it hangs on a full-speed hub, whose other devices take its bus time.",
-           "Plug it into the computer itself");
+           name +
+               "it is connected to a full-speed hub and shares bus time with the hub's other "
+               "devices.",
+           "Plug it directly into the computer");
     } else {
-      note(Health::kAdvice, name + "it hangs on a hub; a socket of the computer is safer.",
-           "Plug it into the computer itself");
+      note(Health::kAdvice,
+           name + "it is connected to a hub; a direct connection is more reliable.",
+           "Plug it directly into the computer");
     }
   }
 
@@ -299,10 +310,10 @@ Finding examine_log(const fs::path& file) {
   // Missing parent folders are created when they are needed.
   while (!fs::exists(place, missing) && place.has_relative_path()) place = place.parent_path();
   if (access(place.c_str(), W_OK) == 0) {
-    return {Health::kGood, "What happens is logged to " + file.string() + ".", {}};
+    return {Health::kGood, "Events are logged to " + file.string() + ".", {}};
   }
-  return {Health::kAdvice, "What happens cannot be logged to " + file.string() + ".",
-          "Make " + place.string() + " writable, or name another file by --log"};
+  return {Health::kAdvice, "Events cannot be logged to " + file.string() + ".",
+          "Make " + place.string() + " writable, or choose another file with --log"};
 }
 
 std::vector<Finding> examine(const SystemInfo& system) {

@@ -22,7 +22,7 @@ std::string in_order(const std::vector<fs::path>& folders) {
   std::string text;
   for (const fs::path& folder : folders) {
     if (folder.empty()) continue;
-    text += (text.empty() ? "" : ", ") + folder.string() + (is_there(folder) ? " (there)" : "");
+    text += (text.empty() ? "" : ", ") + folder.string() + (is_there(folder) ? " (exists)" : "");
   }
   return text;
 }
@@ -31,18 +31,18 @@ std::string in_order(const std::vector<fs::path>& folders) {
 
 Finding examine_names(const std::vector<fs::path>& folders) {
   const std::string what =
-      "Scenes and arms are looked for by name in this order: " + in_order(folders) + ".";
+      "Scenes and arms are searched by name in this order: " + in_order(folders) + ".";
   if (std::any_of(folders.begin(), folders.end(),
                   [](const fs::path& folder) { return is_there(folder / "scenes"); })) {
     return {Health::kGood, what, {}};
   }
-  return {Health::kAdvice, what, "Install the package thimble, or give the paths of files"};
+  return {Health::kAdvice, what, "Install the package thimble, or pass the paths of files"};
 }
 
 Finding examine_scans(const scene::ScanPlaces& places) {
   std::vector<fs::path> folders = places.folders;
   if (!places.unpacked.empty()) folders.push_back(places.unpacked);
-  const std::string order = "; looked for in this order: " + in_order(folders) + ".";
+  const std::string order = "; searched in this order: " + in_order(folders) + ".";
   for (const fs::path& folder : folders) {
     if (is_there(folder / kFirstScan)) {
       return {Health::kGood, "The scanned meshes are in " + folder.string() + order, {}};
@@ -54,9 +54,9 @@ Finding examine_scans(const scene::ScanPlaces& places) {
                 places.unpacked.string() + " on first use" + order,
             {}};
   }
-  return {Health::kAdvice, "The scanned meshes that some scenes name are not here" + order,
-          "sudo apt install libcgal-demo, or app/fetch_meshes.sh in the sources; scenes without "
-          "them: thimble run water_balloon"};
+  return {Health::kAdvice, "The scanned meshes of some scenes are not installed" + order,
+          "sudo apt install libcgal-demo, or run app/fetch_meshes.sh in the sources; a scene "
+          "without them: thimble run water_balloon"};
 }
 
 }  // namespace thimble::bringup

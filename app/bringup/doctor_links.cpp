@@ -71,69 +71,72 @@ std::string rule_for(const FoundArm& arm) {
 
 std::string mend_for_closed(const FoundArm& arm) {
   if (is_haply_on_usb(arm)) {
-    return "Use it by its vendor's service, which lists it in `thimble devices` as another line; "
-           "this line is never opened.";
+    return "Use it through its vendor's service; `thimble devices` then lists it on another line. "
+           "This USB device is never opened.";
   }
   if (arm.arm == "Force Dimension") {
     const auto library = driver::dhd::library();
-    return library
-               ? std::string("Plug it in again.")
-               : library.error().message +
-                     " Install the vendor's SDK and set FDSDK to its folder, or "
-                     "THIMBLE_DHD_LIBRARY to its libdrd.so.3; Thimble drives the arm through it.";
+    return library ? std::string("Plug it in again.")
+                   : library.error().message +
+                         " Install the vendor's SDK and set FDSDK to its folder, or set "
+                         "THIMBLE_DHD_LIBRARY to its libdrd.so.3. Thimble drives the arm through "
+                         "this library.";
   }
   const auto library = driver::hd::library();
   if (library) return "Plug it in again.";
   return library.error().message +
-         " Install OpenHaptics and the arm's driver (they need libncurses5 and the group of its "
-         "node), "
-         "or set THIMBLE_HD_LIBRARY to libHD.so; Thimble drives the arm through it.";
+         " Install OpenHaptics and the arm's driver (they need libncurses5 and membership in the "
+         "group of the device node), or set THIMBLE_HD_LIBRARY to libHD.so. Thimble drives the arm "
+         "through this library.";
 }
 
 Finding examine_linked(const FoundArm& arm) {
   const std::string name = arm.arm + " " + arm.name() + ": ";
   if (arm.certainty == Certainty::kUnknown) {
     return {Health::kAdvice,
-            name + "what answers on " + arm.address +
-                " is `thimble exec --serve haply`, no service of Haply's.",
-            "--device auto leaves it out; use it by --device " + arm.name()};
+            name + "the server on " + arm.address +
+                " is `thimble exec --serve haply`, not Haply's service.",
+            "--device auto ignores it; to use it, pass --device " + arm.name()};
   }
   if (!arm.trouble.empty()) {
     return {Health::kProblem,
-            name + "its service on " + arm.address + " has it, but it cannot be used.",
+            name + "its service on " + arm.address + " lists it, but it cannot be used.",
             arm.trouble};
   }
   return {Health::kGood,
-          name + "its service on " + arm.address + " has it" +
-              (arm.software.empty() ? ", and tells no versions of it" : " (" + arm.software + ")") +
-              ". Untried on hardware.",
+          name + "its service on " + arm.address + " lists it" +
+              (arm.software.empty() ? " without version numbers" : " (" + arm.software + ")") +
+              ". Not tested on hardware.",
           {}};
 }
 
 Finding examine_access(const FoundArm& arm, const std::filesystem::path& root) {
   const std::string name = arm.arm + " " + arm.name() + ": ";
   if (arm.node.empty()) {
-    return {Health::kProblem,
-            name + "no kernel driver has it, so its vendor's library has no node.",
-            arm.bus == driver::kSerialBus ? "sudo modprobe cdc_acm, then plug it in again"
-                                          : "sudo modprobe usbhid, then plug it in again"};
+    return {
+        Health::kProblem,
+        name +
+            "no kernel driver is bound to it, so its vendor's library has no device node to open.",
+        arm.bus == driver::kSerialBus ? "sudo modprobe cdc_acm, then plug it in again"
+                                      : "sudo modprobe usbhid, then plug it in again"};
   }
   if (arm.accessible) {
-    return {
-        Health::kGood, name + "you may open " + arm.node + ", as its vendor's library does.", {}};
+    return {Health::kGood,
+            name + "you have access to " + arm.node + ", which its vendor's library opens.",
+            {}};
   }
   const std::string group = group_of(root / std::filesystem::path(arm.node).relative_path());
   std::string mend =
-      "What its vendor's set-up does here is not published: run that again, as its manual says. ";
+      "The vendor's set-up steps for access are not published; repeat the set-up from its manual. ";
   if (!group.empty() && group != "root") {
-    mend +=
-        "Or join the group of the node, and log in again: sudo usermod -aG " + group + " $USER. ";
+    mend += "Or join the group of the device node and log in again: sudo usermod -aG " + group +
+            " $USER. ";
   }
-  mend += "Or put this line into /etc/udev/rules.d/70-vendor-arm.rules, and plug it in again: " +
+  mend += "Or add this line to /etc/udev/rules.d/70-vendor-arm.rules and plug the arm in again: " +
           rule_for(arm);
   return {Health::kProblem,
-          name + "you may not open " + arm.node + ", by which its vendor's library reaches it" +
-              (group.empty() ? "." : " (its group is " + group + ")."),
+          name + "you have no access to " + arm.node + ", which its vendor's library must open" +
+              (group.empty() ? "." : " (group " + group + ")."),
           mend};
 }
 
@@ -144,9 +147,9 @@ std::vector<Finding> examine_services(const std::vector<FoundArm>& arms) {
   });
   if (!on_usb || served) return {};
   const auto asked = driver::haply::find_arms(driver::haply::port_of_user());
-  const std::string why = asked ? "It runs, and lists no Inverse3." : asked.error().message;
-  return {{Health::kProblem, "An Inverse3 is plugged in, but no service tells of it. " + why,
-           "Install and start Haply's Inverse Service; if it listens elsewhere, set "
+  const std::string why = asked ? "The service runs but lists no Inverse3." : asked.error().message;
+  return {{Health::kProblem, "An Inverse3 is plugged in, but no service lists it. " + why,
+           "Install and start Haply's Inverse Service; if it uses another port, set "
            "THIMBLE_HAPLY_PORT to its WebSocket port"}};
 }
 
@@ -159,13 +162,12 @@ std::vector<Finding> examine_touch(const std::vector<FoundArm>& arms,
   if (!plugged_in) return findings;
   if (runs("ModemManager", root)) {
     findings.push_back({Health::kAdvice,
-                        "ModemManager runs, and may talk to the Touch's serial port first.",
-                        "sudo systemctl stop ModemManager while the Touch is used"});
+                        "ModemManager is running and may open the Touch's serial port first.",
+                        "sudo systemctl stop ModemManager while you use the Touch"});
   }
   if (!is_installed("libncurses.so.5", root)) {
     findings.push_back({Health::kAdvice,
-                        "libncurses.so.5 is not installed, which the Touch's vendor's library "
-                        "needs.",
+                        "libncurses.so.5 is not installed; the Touch's vendor library needs it.",
                         "Install libncurses5 (Debian 12: sudo apt install libncurses5)"});
   }
   return findings;

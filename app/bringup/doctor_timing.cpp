@@ -45,9 +45,9 @@ void look_at_priority(const SystemInfo& system, bool arm, std::vector<Finding>& 
   } else {
     findings.push_back(
         {arm ? Health::kProblem : Health::kAdvice,
-         "You may not run at real-time priority 80, so the loop waits behind other programs while "
-         "a "
-         "motor pulls. Commands that push a real arm refuse it unless you say --no-real-time.",
+         "You may not run at real-time priority 80, so other programs can delay the loop while "
+         "motors are on. Commands that apply force to a real arm refuse to run without it unless "
+         "you pass --no-real-time.",
          "echo '@plugdev - rtprio 80' | sudo tee /etc/security/limits.d/thimble.conf, then log in "
          "again"});
   }
@@ -67,13 +67,13 @@ void look_at_preemption(const SystemInfo& system, std::vector<Finding>& findings
   const std::string version = read_line(below(system, "/proc/sys/kernel/version"));
   if (read_line(below(system, "/sys/kernel/realtime")) == "1" ||
       version.find("PREEMPT_RT") != std::string::npos) {
-    findings.push_back({Health::kGood, "The kernel is a real-time one (PREEMPT_RT).", {}});
+    findings.push_back({Health::kGood, "The kernel is a real-time kernel (PREEMPT_RT).", {}});
   } else if (!version.empty()) {
     findings.push_back({Health::kAdvice,
-                        "The kernel is no real-time one (PREEMPT_RT): now and then a tick comes "
-                        "late by a millisecond or more.",
-                        "sudo apt install linux-image-rt-amd64, then start that kernel; `thimble "
-                        "bench` says whether this one is good enough"});
+                        "The kernel is not a real-time kernel (PREEMPT_RT): some ticks may be late "
+                        "by a millisecond or more.",
+                        "sudo apt install linux-image-rt-amd64, then boot that kernel; `thimble "
+                        "bench` measures whether the current one is good enough"});
   }
 }
 
@@ -87,14 +87,17 @@ void look_at_governor(const SystemInfo& system, std::vector<Finding>& findings) 
   }
   if (!any) return;  // most virtual machines
   if (others.empty()) {
-    findings.push_back({Health::kGood, "The processors run at full speed (performance).", {}});
+    findings.push_back(
+        {Health::kGood,
+         "The CPU frequency governor is performance: the processors run at full speed.",
+         {}});
     return;
   }
   std::string names;
   for (const std::string& name : others) names.append(names.empty() ? "" : ", ").append(name);
   findings.push_back({Health::kAdvice,
-                      "The processors change their speed by the governor " + names +
-                          ": a loop that mostly waits gets a slow processor.",
+                      "The CPU frequency governor is " + names +
+                          ": it lowers the CPU frequency for a loop that mostly waits.",
                       "echo performance | sudo tee "
                       "/sys/devices/system/cpu/cpu*/cpufreq/scaling_governor"});
 }
@@ -118,9 +121,9 @@ void look_at_sleep(const SystemInfo& system, std::vector<Finding>& findings) {
   const fs::path latency = below(system, "/dev/cpu_dma_latency");
   if (access(latency.c_str(), W_OK) == 0) {
     findings.push_back({Health::kGood,
-                        "Processors at rest take " + std::to_string(wake_us) +
-                            " us to wake; you may ask for less (/dev/cpu_dma_latency), and a run "
-                            "does.",
+                        "Idle processors take " + std::to_string(wake_us) +
+                            " us to wake up; a run reduces this with /dev/cpu_dma_latency, to "
+                            "which you have access.",
                         {}});
     return;
   }
@@ -128,8 +131,8 @@ void look_at_sleep(const SystemInfo& system, std::vector<Finding>& findings) {
   const bool there = fs::exists(latency, missing);
   findings.push_back(
       {Health::kAdvice,
-       "Processors at rest take " + std::to_string(wake_us) + " us to wake, and " +
-           (there ? "you may not write /dev/cpu_dma_latency, which would keep them awake."
+       "Idle processors take " + std::to_string(wake_us) + " us to wake up, and " +
+           (there ? "you may not write to /dev/cpu_dma_latency to keep them awake."
                   : "the kernel has no /dev/cpu_dma_latency to keep them awake."),
        there ? "echo 'KERNEL==\"cpu_dma_latency\", GROUP=\"plugdev\", MODE=\"0660\"' | sudo tee "
                "/etc/udev/rules.d/71-thimble-latency.rules && sudo udevadm control --reload && "

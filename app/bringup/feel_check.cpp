@@ -50,8 +50,7 @@ class Check {
   }
 
   bool encoders() {
-    if (!prompt_("Move the grip slowly through its whole workspace for four seconds."))
-      return false;
+    if (!prompt_("Move the grip slowly through its whole workspace for 4 seconds.")) return false;
     std::array<std::int32_t, 3> least{INT32_MAX, INT32_MAX, INT32_MAX};
     std::array<std::int32_t, 3> most{INT32_MIN, INT32_MIN, INT32_MIN};
     const auto watch = [&](const driver::DeviceState& state) {
@@ -62,7 +61,7 @@ class Check {
       return Eigen::Vector3d(0, 0, 0);
     };
     if (!bench_.run(kEncoders_s, watch, stop_)) return false;
-    constexpr std::int32_t kTravelMin = 100;  // counts: some mm at the tip of any arm we know
+    constexpr std::int32_t kTravelMin = 100;  // counts; a few mm at the tip of every supported arm
     std::array<int, 3> travel{};
     for (std::size_t i = 0; i < 3; ++i) travel[i] = most[i] - least[i];
     std::string dead;
@@ -71,8 +70,8 @@ class Check {
         dead += fmt::format(" Encoder {} does not count.", static_cast<int>(i) + 1);
     }
     return note("encoders", dead.empty(),
-                fmt::format("The encoders travelled {}, {} and {} counts{}", travel[0], travel[1],
-                            travel[2], dead.empty() ? "." : "; at least 100 each were expected.") +
+                fmt::format("The encoders moved {}, {} and {} counts{}", travel[0], travel[1],
+                            travel[2], dead.empty() ? "." : "; expected at least 100 each.") +
                     dead);
   }
 
@@ -91,8 +90,8 @@ class Check {
     const std::string text = describe_wiring(guess_wiring(moves_.colwise().normalized(), expected),
                                              "Encoder", "counts backwards", "does not count");
     return note("encoder wires", false,
-                text.empty() ? "Each encoder counts as it should for such movements: look at the "
-                               "arm file's base, or move straighter."
+                text.empty() ? "Each encoder counts correctly for these movements. Check `base` in "
+                               "the arm file, or move in a straighter line."
                              : text);
   }
 
@@ -113,18 +112,17 @@ class Check {
     if (right) return true;
     if (pushed_.cwiseAbs().maxCoeff() < kYields) {
       return note("motor wires", false,
-                  fmt::format("The tip did not move under {:.2f} N along any axis, and the feel "
-                              "check may not push harder: its dry friction is higher than that, or "
-                              "you held it fast, or the motors have no power.",
+                  fmt::format("The tip did not move under {:.2f} N along any axis, the highest "
+                              "force that the feel check allows. The dry friction is higher, you "
+                              "held the grip firmly, or the motors have no power.",
                               kStrongest));
     }
     const auto expected = [this](const WiringGuess& guess) { return tip_forces(guess); };
     const std::string text = describe_wiring(guess_wiring(pushed_, expected), "Motor",
                                              "pulls backwards", "does not pull");
-    return note("motor wires", false,
-                text.empty()
-                    ? "Each motor pulls as it should: you held the grip fast, or pushed it."
-                    : text);
+    return note(
+        "motor wires", false,
+        text.empty() ? "Each motor pulls correctly; you held the grip firmly or pushed it." : text);
   }
 
   /// Returns the joint rotation when the tip moves from the middle of the workspace by `step`, rad.
@@ -179,8 +177,7 @@ class Check {
   /// Returns false if the check was ended; records whether the movement was correct.
   bool direction(int axis, bool& all_right) {
     const auto name = kAxes[static_cast<std::size_t>(axis)];
-    if (!prompt_(
-            fmt::format("Move the grip about 3 cm along {} and back within two seconds.", name)))
+    if (!prompt_(fmt::format("Move the grip about 3 cm along {} and back within 2 seconds.", name)))
       return false;
     const Eigen::Vector3d from = bench_.device().state().p_WT;
     const Eigen::Vector3d q_from = bench_.device().state().q;
@@ -197,9 +194,9 @@ class Check {
     const bool right = farthest[axis] > 0.01 && farthest[axis] > 0.7 * farthest.norm();
     all_right = all_right && right;
     note(fmt::format("direction {}", "xyz"[axis]), right,
-         fmt::format("The tip went by {} mm when moved along {}{}",
+         fmt::format("The tip moved by {} mm when you moved it along {}{}",
                      scene::place_text(1e3 * farthest, 1), name,
-                     right ? "." : ": run `thimble calibrate`."));
+                     right ? "." : ". Run `thimble calibrate`."));
     return true;
   }
 
@@ -227,10 +224,9 @@ class Check {
   /// rest.
   bool push(int axis, bool& all_right) {
     const auto name = kAxes[static_cast<std::size_t>(axis)];
-    if (!prompt_(fmt::format(
-            "Hold the grip loosely and still: it pulls and pushes with {:.2f} N along {}, and with "
-            "up to {:.2f} N if that does not move it.",
-            push_, name, kStrongest)))
+    if (!prompt_(fmt::format("Hold the grip loosely and still. It pulls and pushes with {:.2f} N "
+                             "along {}, and with up to {:.2f} N if that does not move it.",
+                             push_, name, kStrongest)))
       return false;
     if (!bench_.device().activate() || !bench_.run(kSettle_s, kRest, stop_)) return false;
     const Eigen::Vector3d along = Eigen::Vector3d::Unit(axis);
@@ -250,10 +246,12 @@ class Check {
          fmt::format(
              "{:.2f} N along {} moved the tip by {} mm{}{}", force, name,
              scene::place_text(1e3 * moved, 2),
-             right   ? "."
-             : stuck ? ": dry friction holds it, a motor is wrong, or you held it fast."
-                     : ": a motor is wrong, or you held it fast.",
-             right && force > push_ ? " Less did not move it: that is its dry friction." : ""));
+             right ? "."
+             : stuck
+                 ? ": dry friction holds it, a motor is wired incorrectly, or you held it firmly."
+                 : ": a motor is wired incorrectly, or you held it firmly.",
+             right && force > push_ ? " A smaller force did not move it, because of dry friction."
+                                    : ""));
     return true;
   }
 
@@ -264,9 +262,8 @@ class Check {
   bool watchdog() {
     constexpr double kBack_s = 0.6;
     constexpr int kAsked = 5;  // ticks
-    if (!prompt_(
-            "Hold the grip loosely and still: it pulls and pushes twice. After the second push "
-            "Thimble falls silent, and the arm must let go by itself."))
+    if (!prompt_("Hold the grip loosely and still. It pulls and pushes twice. After the second "
+                 "push Thimble stops sending, and the arm must release the grip by itself."))
       return false;
     if (!bench_.device().activate() || !bench_.run(kSettle_s, kRest, stop_)) return false;
     const Eigen::Vector3d along = Eigen::Vector3d::UnitX();
@@ -283,11 +280,10 @@ class Check {
     const double pushed = x();
     if (pushed - start < kYields) {
       bench_.device().deactivate();
-      return note(
-          "watchdog", false,
-          fmt::format("{:.2f} N did not move the tip, so nothing shows whether the motors go "
-                      "off by themselves: its dry friction is higher, or you held it fast.",
-                      force));
+      return note("watchdog", false,
+                  fmt::format("{:.2f} N did not move the tip, so the watchdog could not be tested. "
+                              "The dry friction is higher, or you held the grip firmly.",
+                              force));
     }
     if (!bench_.run(kBack_s, kRest, stop_)) return false;
     const double back = pushed - x();
@@ -314,7 +310,8 @@ class Check {
       bench_.run(std::max(0.4, 3 * named), watch, stop_, true);
     }
     if (!comes_back) {
-      // Asked before zero is sent, so that only the watchdog can have released the tip.
+      // The question comes before zero is sent, so that only the watchdog can have released the
+      // tip.
       const auto felt = question_ && !stop_.load() ? question_("Has the arm stopped pushing?")
                                                    : std::optional<bool>();
       bench_.device().deactivate();
@@ -329,34 +326,36 @@ class Check {
       bench_.ask(kAsked);
       const bool off = x() < let_go;
       return note("watchdog", off,
-                  off ? fmt::format("The arm speaks only when spoken to. Asked {:.0f} ms after the "
-                                    "last message, it had let go.",
+                  off ? fmt::format("The arm sends reports only on request. A request {:.0f} ms "
+                                    "after the last message showed that the motors were off.",
                                     read_after * 1e3)
-                      : fmt::format("The arm speaks only when spoken to. Asked {:.0f} ms after the "
-                                    "last message, its motors did not go off: it still pushed. "
-                                    "Switch it off at its switch.",
+                      : fmt::format("The arm sends reports only on request. A request {:.0f} ms "
+                                    "after the last message showed that the motors did not go off. "
+                                    "Switch the arm off at its switch.",
                                     read_after * 1e3));
     }
     const bool right = off_after > 0 && off_after < allowed;
-    return note("watchdog", right,
-                off_after > 0
-                    ? fmt::format("The force fell to half {:.0f} ms after the last message{}",
-                                  off_after * 1e3, right ? "." : ", later than the arm file says.")
-                    : std::string("The motors did not go off. Switch the arm off at its switch."));
+    return note(
+        "watchdog", right,
+        off_after > 0
+            ? fmt::format("The force fell to half {:.0f} ms after the last message{}",
+                          off_after * 1e3, right ? "." : ", later than the arm file allows.")
+            : std::string("The motors did not go off. Switch the arm off at its switch."));
   }
 
   /// Records the user's answer if dry friction hides the effect of the motors.
   bool by_feel(const std::optional<bool>& felt, double force) {
     const std::string why = fmt::format(
-        "Dry friction of more than {:.2f} N holds the tip where it was pushed, so that its "
-        "position "
-        "does not show when the motors go off. ",
+        "Dry friction of more than {:.2f} N holds the tip in place, so its position does not show "
+        "when the motors go off. ",
         force / 2);
-    if (!felt) return note("watchdog", false, why + "Nobody said whether it let go.");
+    if (!felt)
+      return note("watchdog", false,
+                  why + "The question whether the arm stopped pushing was not answered.");
     return note("watchdog", *felt,
-                why + (*felt ? "You felt that it let go."
-                             : "The motors did not go off, as you said. Switch the arm off at its "
-                               "switch."));
+                why + (*felt ? "You answered that the arm stopped pushing."
+                             : "You answered that the motors did not go off. Switch the arm off at "
+                               "its switch."));
   }
 
   static double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
@@ -367,9 +366,9 @@ class Check {
   const std::atomic<bool>& stop_;
   const Question& question_;
   std::vector<CheckResult> results_;
-  double push_ = kForce;                              // N
-  bool answers_only_ = false;                         // so the silence was not a fault
-  double friction_ = 0;                               // N, min. force that moved the tip
+  double push_ = kForce;       // N
+  bool answers_only_ = false;  // the arm sends only when asked, so silence is not a fault
+  double friction_ = 0;        // N, min. force that moved the tip
   Eigen::Matrix3d moves_ = Eigen::Matrix3d::Zero();   // joint angles, a column for each movement
   Eigen::Matrix3d pushed_ = Eigen::Matrix3d::Zero();  // of the tip, m, a column for each push
 };

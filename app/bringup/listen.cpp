@@ -6,8 +6,8 @@ namespace thimble::bringup {
 
 std::string Listened::text() const {
   return fmt::format(
-      "{:.0f} reports per second; {} ticks had none, {} reports skipped, {} rejected, {} messages "
-      "refused.",
+      "{:.0f} reports per second; {} ticks had no report, {} reports skipped, {} rejected, {} "
+      "messages refused.",
       static_cast<double>(reports) / seconds, missing, skipped, rejected, refused);
 }
 

@@ -69,7 +69,8 @@ std::string describe_wiring(const WiringGuess& guess, const std::string& what,
       continue;
     }
     if (guess.source[k] != i) {
-      say(name, "does what " + std::to_string(guess.source[k] + 1) + " should: they are swapped.");
+      say(name,
+          "responds as " + std::to_string(guess.source[k] + 1) + " should. They are swapped.");
     }
     if (guess.sign[k] < 0) say(name, backwards + '.');
   }

@@ -27,41 +27,43 @@ HilResult check_watchdog_time(const HilRig& rig) {
     case bringup::WatchdogEnd::kStopped:
       break;
     case bringup::WatchdogEnd::kTooLong:
-      return skipped(kName, fmt::format("A watchdog of {:.0f} ms cannot be seen on a free tip "
-                                        "within {:.0f} mm. The feel check measures it on a hand "
-                                        "(--attended).",
-                                        1e3 * order.named, 1e3 * bringup::kWatchdogWayMost));
+      return skipped(
+          kName,
+          fmt::format("A watchdog of {:.0f} ms cannot be measured on a free tip within {:.0f} mm. "
+                      "The feel check measures it with a hand on the grip (--attended).",
+                      1e3 * order.named, 1e3 * bringup::kWatchdogWayMost));
     case bringup::WatchdogEnd::kNoRoom:
-      return skipped(kName,
-                     fmt::format("The tip is too near to a side of the workspace to be pushed for "
-                                 "{:.0f} mm; put it into the middle.",
-                                 1e3 * bringup::kWatchdogWayMost));
+      return skipped(kName, fmt::format("The tip is too close to a side of the workspace for a "
+                                        "push of {:.0f} mm. Move it to the middle.",
+                                        1e3 * bringup::kWatchdogWayMost));
     case bringup::WatchdogEnd::kTooMuch:
-      return skipped(kName,
-                     fmt::format("The file's dry friction needs a push of {:.2f} N, which is "
-                                 "more than is allowed.",
-                                 seen.force));
+      return skipped(
+          kName,
+          fmt::format(
+              "The dry friction of the arm file needs a push of {:.2f} N, which exceeds the limit.",
+              seen.force));
     case bringup::WatchdogEnd::kAnswersOnly:
-      return skipped(kName,
-                     "The arm speaks only when spoken to, so its watchdog's time cannot be seen.");
+      return skipped(
+          kName,
+          "The arm sends reports only on request, so the time of its watchdog cannot be measured.");
     case bringup::WatchdogEnd::kHeld:
       return judged(kName,
-                    fmt::format("The tip went {:.2f} mm under {:.2f} N: it is held, or its "
+                    fmt::format("The tip moved only {:.2f} mm under {:.2f} N: it is held, or its "
                                 "friction is higher than the arm file says.",
                                 1e3 * seen.way, seen.force),
                     {{"watchdog_way", 1e3 * seen.way, "mm", "> 0.5", ""}});
     case bringup::WatchdogEnd::kLetGo:
-      return skipped(kName, fmt::format("The tip went {:.0f} mm in {:.0f} ms and was let go before "
-                                        "the watchdog's time was over: it rubs less than the arm "
-                                        "file says.",
-                                        1e3 * seen.way, 1e3 * seen.time));
+      return skipped(kName,
+                     fmt::format("The tip moved {:.0f} mm in {:.0f} ms and was released before the "
+                                 "watchdog acted: its friction is lower than the arm file says.",
+                                 1e3 * seen.way, 1e3 * seen.time));
     case bringup::WatchdogEnd::kStillOn:
-      return judged(kName,
-                    fmt::format("The motors were still on {:.0f} ms after the last message, when "
-                                "the tip had gone {:.0f} mm and was let go. The arm file says "
-                                "{:.0f} ms.",
-                                1e3 * seen.time, 1e3 * seen.way, 1e3 * order.named),
-                    {{"watchdog_seen", 0, "", "== 1", ""}});
+      return judged(
+          kName,
+          fmt::format("The motors were still on {:.0f} ms after the last message, when the tip had "
+                      "moved {:.0f} mm and was released. The arm file says {:.0f} ms.",
+                      1e3 * seen.time, 1e3 * seen.way, 1e3 * order.named),
+          {{"watchdog_seen", 0, "", "== 1", ""}});
     case bringup::WatchdogEnd::kSeen:
       return judged(
           kName,

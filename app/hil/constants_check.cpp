@@ -46,9 +46,8 @@ std::string add_tilt(const bringup::Identified& found, double known_mass,
   const double tilt =
       std::atan2(weight_B.cross(down_B).norm(), weight_B.dot(down_B)) * 180 / std::numbers::pi;
   figures.push_back({"base_tilt", tilt, "degrees", fmt::format("<= {:g}", kTilt), ""});
-  return fmt::format(
-      " Gravity pulls {:.1f} degrees aslant{}.", tilt,
-      tilt > kTilt ? ": the base stands otherwise than the arm file says (base)" : "");
+  return fmt::format(" Gravity is tilted by {:.1f} degrees{}.", tilt,
+                     tilt > kTilt ? " from the direction that `base` of the arm file gives" : "");
 }
 
 /// Adds the difference between the mass along each axis of the base and the file's, in the middle
@@ -65,7 +64,8 @@ std::string add_masses(const bringup::LinkFit& found, const scene::ArmFile& file
     figures.push_back(difference(kNames[i], is[i], named[i], kTenth * named[i]));
   }
   return fmt::format(
-      "Mass along x, y, z in the middle {:.1f}, {:.1f}, {:.1f} g (file {:.1f}, {:.1f}, {:.1f})",
+      "Mass along x, y, z in the middle of the workspace {:.1f}, {:.1f}, {:.1f} g (file {:.1f}, "
+      "{:.1f}, {:.1f})",
       1e3 * is[0].value, 1e3 * is[1].value, 1e3 * is[2].value, 1e3 * named[0], 1e3 * named[1],
       1e3 * named[2]);
 }
@@ -74,18 +74,18 @@ std::string add_masses(const bringup::LinkFit& found, const scene::ArmFile& file
 
 HilResult check_constants(const HilRig& rig, const HilOptions& suite) {
   if (rig.file.is<driver::DeltaArm>() || rig.file.is<driver::ToldArm>()) {
-    return skipped(kName, "An arm of this build cannot be identified yet.");
+    return skipped(kName, "Arms of this geometry cannot be identified yet.");
   }
   if (suite.known_mass > 0 && !rig.attended) {
-    return skipped(kName, "A known mass needs a person who fixes it to the tip (--attended).");
+    return skipped(kName, "A person must fix the known mass to the tip (--attended).");
   }
   const bringup::OpenBench open =
       [&](bool loaded) -> driver::Result<std::unique_ptr<bringup::BenchArm>> {
     if (loaded &&
-        !rig.prompt(fmt::format("Fix {:g} kg to the tip so that it cannot swing, and hold "
-                                "it from below; let go once you feel that it is carried.",
+        !rig.prompt(fmt::format("Fix {:g} kg to the tip so that it cannot swing, and support it "
+                                "from below. Let go once you feel that the arm carries it.",
                                 suite.known_mass))) {
-      return driver::Error{"It was left before the known mass was on the tip."};
+      return driver::Error{"The prompt was cancelled before the known mass was on the tip."};
     }
     return rig.open(loaded ? TipHold::kMass : TipHold::kFree);
   };
@@ -142,8 +142,8 @@ HilResult check_constants(const HilRig& rig, const HilOptions& suite) {
   HilResult result = judged(kName, text, std::move(figures));
   if (result.outcome == HilOutcome::kFailed) {
     result.text +=
-        " If the file was never fitted to this arm, run `thimble identify`; else the arm "
-        "has changed.";
+        " If the file was never fitted to this arm, run `thimble identify`. Otherwise the arm has "
+        "changed.";
   }
   return result;
 }

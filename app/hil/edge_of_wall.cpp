@@ -21,8 +21,8 @@ constexpr double kSettle = 0.4;        // s
 constexpr double kWatchedLeast = 0.6;  // s
 constexpr double kWindowLeast = 0.1;   // s, at the beginning and at the end
 constexpr double kFar = 0.006;         // m
-constexpr double kEnergyTimes = 10;    // of the kick's
-constexpr double kCountsAtRest = 3;    // counts of flicker at rest
+constexpr double kEnergyTimes = 10;    // max. ratio of the energy from a wall to that of the kick
+constexpr double kCountsAtRest = 3;    // counts; max. flicker of the encoders at rest
 constexpr double kMassUnknown = 0.1;   // kg, if the file names none [chosen]
 
 /// Width of an oscillation: a tip that dry friction holds away from the wall's position has no
@@ -130,7 +130,7 @@ class Trial {
 
 driver::Error ended(const bringup::BenchArm& bench) {
   const driver::Fault fault = bench.fault();
-  if (fault == driver::Fault::kNone) return {"It was stopped."};
+  if (fault == driver::Fault::kNone) return {"Stopped."};
   return {std::string(driver::describe(fault)) + " The motors are off."};
 }
 
@@ -175,8 +175,8 @@ class Search {
     }
     if (rested > 0) return rested;
     return driver::Error{
-        "Even the softest wall grew: an encoder or a motor is turned round, or the loop is far "
-        "later than the arm file says."};
+        "Even the softest wall adds energy: the sign of an encoder or motor is reversed, or the "
+        "loop has far more delay than the arm file says."};
   }
 
   /// Returns the stiffness at which the outcome changes, by fine steps from `stiffness`. The result
@@ -210,7 +210,7 @@ class Search {
     edge_.given_most = std::max(edge_.given_most, trial.given_most());
     if (!((bench_.device().state().p_WT - p_start_W_).norm() < 5 * kFar)) {
       return driver::Error{
-          "The tip does not stay where it is let go, so no wall was tried further: put the arm "
+          "The tip does not stay where it is released, so no more walls were tested. Put the arm "
           "into the middle of its workspace, or balance it."};
     }
     return trial.grew(step_);

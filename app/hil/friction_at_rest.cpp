@@ -75,8 +75,8 @@ HilResult check_friction_at_rest(const HilRig& rig) {
   const double moved = *most - *least;
   return judged(
       kName,
-      fmt::format("After rubbing over {:.1f} mm and a stop the force above {:g} Hz is "
-                  "{:.2f} mN RMS ({:g} mN are felt), and the tip moves by {:.0f} um.",
+      fmt::format("After {:.1f} mm of sliding and a stop, the force above {:g} Hz is {:.2f} mN RMS "
+                  "(perceptible from {:g} mN), and the tip moves by {:.0f} um.",
                   1e3 * slid, kCorner, 1e3 * loud, 1e3 * stability::kRestFelt, 1e6 * moved),
       {{"rubbed_way", 1e3 * slid, "mm", "> 1", ""},
        {"force_above_50_hz", 1e3 * loud, "mN RMS",

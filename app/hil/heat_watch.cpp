@@ -105,59 +105,61 @@ std::vector<session::Figure> HeatWatch::figures() const {
   std::vector<session::Figure> figures{
       {"motor_heat", hottest_, "of the limit", "<= 1", "by the driver's model"},
       {"heat_from_model", apart_, "of the limit", fmt::format("<= {:g}", kApartMost),
-       "how far the driver's heat was from that of the arm file's model"},
+       "difference between the driver's heat and that of the arm file's model"},
       {"heat_in_the_end", (load_ / time_).maxCoeff(), "of the limit", "",
-       "where this motion would bring it if it went on for ever"},
-      {"current_of_allowed", over_, "", "<= 1", "of what a motor so hot may get"},
+       "limit for an unlimited duration of this motion"},
+      {"current_of_allowed", over_, "", "<= 1", "of the current that the heat of the motor allows"},
       {"ticks_lowered_by_heat",
        static_cast<double>(bench_.device().heat().lowered() - lowered_before_), "", "", ""}};
   if (winding_motor_ > 0) {
-    figures.push_back({"winding_heat", winding_most_, "of the limit", "<= 1",
-                       "what is true of the simulated motors"});
+    figures.push_back(
+        {"winding_heat", winding_most_, "of the limit", "<= 1", "of the simulated motors"});
     figures.push_back({"winding_of_thought", winding_ratio_, "", fmt::format("<= {:g}", kRatioMost),
-                       "how warm a winding was, of what the driver thought"});
+                       "temperature rise of a winding, divided by the driver's estimate"});
   }
   return figures;
 }
 
 std::string HeatWatch::text() const {
   if (!named_) {
-    return " The arm file does not say what its motors carry for long (joints: "
-           "continuous_current), so nothing is known of their heat.";
+    return " The heat of the motors is unknown because the arm file has no joints: "
+           "continuous_current.";
   }
   std::string text = fmt::format(
-      " By the driver's model the hottest motor was at {:.0f} % of its limit, and would come to "
-      "{:.0f} % if this went on for ever{}.",
+      " By the driver's model the hottest motor reached {:.0f} % of its limit, and would reach "
+      "{:.0f} % if this motion continued forever{}.",
       100 * hottest_, 100 * (load_ / time_).maxCoeff(),
-      apart_ <= kApartMost ? ", as the arm file's model has it"
-                           : fmt::format("; the arm file's model is up to {:.1f} % of the limit "
-                                         "from that",
-                                         100 * apart_));
+      apart_ <= kApartMost
+          ? ", in agreement with the arm file's model"
+          : fmt::format("; the arm file's model differs by up to {:.1f} % of the limit",
+                        100 * apart_));
   const auto lowered = bench_.device().heat().lowered() - lowered_before_;
-  if (lowered > 0) text += fmt::format(" Heat lowered the force in {} ticks.", lowered);
+  if (lowered > 0)
+    text += fmt::format(" The force was reduced because of heat in {} ticks.", lowered);
   if (over_ > 1) {
-    text += fmt::format(" A motor got {:.2f} times the current that its heat allows.", over_);
+    text += fmt::format(" A motor received {:.2f} times the current that its heat allows.", over_);
   }
   if (!bench_.simulated()) {
     return text +
-           " How warm the windings really are no sensor says: motors that heat more than "
-           "the arm file says cannot be seen here.";
+           " No sensor measures the temperature of the windings, so this check cannot detect "
+           "motors that heat more than the arm file says.";
   }
   if (winding_motor_ == 0) {
     return text + (bench_.winding_rise() && file_.simulated.drive_train.heat.named()
-                       ? " Its windings stayed too cold to be compared."
-                       : " Its motors do not warm in the simulation (drive_train: heat), so that "
-                         "was not compared with their windings.");
+                       ? " The windings stayed too cold for a comparison."
+                       : " The simulation has no motor heat (drive_train: heat), so there are no "
+                         "winding temperatures to compare.");
   }
   if (winding_ratio_ <= kRatioMost) {
-    return text + fmt::format(" Its windings were never warmer than that: {:.0f} % at the most.",
-                              100 * winding_most_);
+    return text +
+           fmt::format(" The simulated windings were never warmer than that: at most {:.0f} %.",
+                       100 * winding_most_);
   }
-  return text + fmt::format(
-                    " Motor {} was at {:.2g} % of its limit where the driver thought {:.2g} %: it "
-                    "heats more than the arm file says (joints: continuous_current, "
-                    "thermal_time_constant).",
-                    winding_motor_, 100 * winding_there_, 100 * thought_there_);
+  return text +
+         fmt::format(
+             " Motor {} was at {:.2g} % of its limit when the driver estimated {:.2g} %: it heats "
+             "more than the arm file says (joints: continuous_current, thermal_time_constant).",
+             winding_motor_, 100 * winding_there_, 100 * thought_there_);
 }
 
 }  // namespace thimble::hil

@@ -48,7 +48,7 @@ class HeatWatch {
   double time_ = 0;      // s
   double hottest_ = 0;   // max. heat estimated by the driver
   double apart_ = 0;     // max. difference between driver and model, beyond rounding
-  double over_ = 0;      // max. ratio of a current to the one that its motor's heat allows
+  double over_ = 0;      // max. ratio of a current to the current that its motor's heat allows
   std::uint64_t lowered_before_;
   double winding_most_ = 0;  // share of the limit
   // Values where a winding was warmer than the driver's estimate by the largest ratio.

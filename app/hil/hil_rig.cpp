@@ -12,11 +12,9 @@ driver::Result<std::unique_ptr<bringup::BenchArm>> open_simulated(const scene::A
                                                                   const HilOptions& options,
                                                                   TipHold hold) {
   if (file.is<driver::DeltaArm>()) {
-    return driver::Error{
-        "The simulated " + file.name +
-        " is homed by the hand that holds it, and these checks need a tip that nobody holds. Take "
-        "a "
-        "serial arm or a linkage: --arm vintage_phantom, polhem or woodenhaptics."};
+    return driver::Error{"The simulated " + file.name +
+                         " must be homed by a hand, but these checks need a free tip. Use a serial "
+                         "arm or a linkage: --arm vintage_phantom, polhem or woodenhaptics."};
   }
   if (hold == TipHold::kHand) {
     return bringup::BenchArm::open(file, {}, {}, bringup::feel_check_hand({0, 0, 0}), kHilForceMax);
@@ -45,7 +43,7 @@ driver::Result<std::unique_ptr<bringup::BenchArm>> open_active(const HilRig& rig
   if (auto active = bench.device().activate(); !active) return active.error();
   const auto rest = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
   if (!bench.run(rig.file.limits.soft_start + 0.05, rest, rig.stop)) {
-    return driver::Error{"It ended before any force was asked for. " +
+    return driver::Error{"The run ended before any force was requested. " +
                          std::string(driver::describe(bench.fault()))};
   }
   return opened;
@@ -63,23 +61,23 @@ std::vector<std::string> not_tested(const scene::ArmFile& file, const HilOptions
   const bool serial = !file.is<driver::DeltaArm>() && !file.is<driver::ToldArm>();
   if (!ran("known_length")) {
     all.emplace_back(
-        "The scale of positions: counts per turn, ratio and length of links look like other masses "
-        "and torque constants in motion. A known length moved shows them (--attended "
-        "--known-length 0.1).");
+        "The scale of positions: in motion, errors of counts per turn, ratio and link length look "
+        "like errors of mass and torque constants. Move the tip by a known length to test them "
+        "(--attended --known-length 0.1).");
   }
   if (serial && !ran("home_pose")) {
     all.emplace_back(
-        "Home position and the encoders' signs: motion about one place does not show them. The "
-        "home "
-        "pose taken from two sides does (--attended --check home_pose), and the feel check.");
+        "Home position and signs of the encoders: motion around one place does not show them. "
+        "Approach the home pose from two sides (--attended --check home_pose), and run the feel "
+        "check.");
   }
   if (!ran("constants")) {
     all.emplace_back("Mass, friction, weight, gains and delay: the check constants did not run.");
   }
   if (options.known_mass == 0 || !ran("constants")) {
     all.emplace_back(
-        "Forces in newtons, and whether the base stands aslant: motion alone shows ratios of mass "
-        "and torque. A known mass hung on the tip shows both (--attended --known-mass 0.03).");
+        "Forces in newtons and the tilt of the base: motion shows only ratios of mass and torque. "
+        "Hang a known mass on the tip to test both (--attended --known-mass 0.03).");
   }
   return all;
 }

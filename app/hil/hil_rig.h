@@ -35,11 +35,13 @@ struct HilOptions {
   /// The arm has passed its feel check in its present state. Without that no force is applied,
   /// unless it passes one now.
   bool checked = false;
-  bool replug = false;      ///< A user pulls the cable and plugs it in again.
-  double spring = 0;        ///< Stiffness of the spring tied to the tip, N/m; 0: none.
-  double soak_minutes = 0;  ///< Of the soak; 0: half a minute, or an hour in the full suite.
-  double known_mass = 0;    ///< See IdentifyOptions; a user fixes it to the tip.
-  double known_length = 0;  ///< From mark to mark, m; a user moves the tip by it; 0: none.
+  bool replug = false;  ///< A user pulls the cable and plugs it in again.
+  double spring = 0;    ///< Stiffness of the spring tied to the tip, N/m; 0: none.
+  /// Duration of the soak, minutes; 0: half a minute, or an hour in the full suite.
+  double soak_minutes = 0;
+  double known_mass = 0;  ///< Mass that a user fixes to the tip, kg; 0: none (see IdentifyOptions).
+  /// Distance from mark to mark by which a user moves the tip, m; 0: none.
+  double known_length = 0;
   /// Names of the checks to run (`hil_checks`); empty: all. A check that applies forces also
   /// selects the feel check.
   std::vector<std::string> only{};

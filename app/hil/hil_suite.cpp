@@ -43,12 +43,13 @@ HilResult check_reports(const HilRig& rig, double seconds) {
 HilResult check_feel(const HilRig& rig, const HilOptions& options) {
   constexpr const char* kName = "feel_check";
   if (!rig.attended) {
-    return judged(kName,
-                  options.checked
-                      ? "This arm, as it is, has passed its feel check before."
-                      : "This arm, with this arm file, has not passed its feel check: run `thimble "
-                        "feel-check`, or this with --attended. Nothing pushes before that.",
-                  {{"passed_before", options.checked ? 1.0 : 0.0, "", "== 1", ""}});
+    return judged(
+        kName,
+        options.checked
+            ? "This arm has already passed its feel check with this arm file."
+            : "This arm has not passed its feel check with this arm file, so no check may apply "
+              "force. Run `thimble feel-check`, or run this command with --attended.",
+        {{"passed_before", options.checked ? 1.0 : 0.0, "", "== 1", ""}});
   }
   auto bench = rig.open(TipHold::kHand);
   if (!bench) return broken_off(kName, bench.error().message, nullptr);
@@ -159,10 +160,10 @@ std::vector<HilResult> run_hil_suite(const HilRig& rig, const HilOptions& option
     const bool by_name =
         std::find(options.only.begin(), options.only.end(), check.name) != options.only.end();
     if (by_name && result.outcome == HilOutcome::kSkipped) {
-      result = not_run(result.name, result.text + " It was asked for by name.");
+      result = not_run(result.name, result.text + " It was requested by name.");
     }
     if (no_push.empty() && result.unsafe) {
-      no_push = "The check " + result.name + " was broken off, so nothing pushes any more.";
+      no_push = "The check " + result.name + " was aborted, so no later check may apply force.";
     } else if (no_push.empty() && check.name == std::string(kFeelCheck) &&
                result.outcome != HilOutcome::kPassed) {
       no_push = "The arm has not passed its feel check.";
@@ -170,7 +171,7 @@ std::vector<HilResult> run_hil_suite(const HilRig& rig, const HilOptions& option
     results.push_back(std::move(result));
     if (listener.ended) listener.ended(results);
   }
-  return with_not_run(std::move(results), options, "It was stopped before this check ended.");
+  return with_not_run(std::move(results), options, "The run was stopped before this check ended.");
 }
 
 }  // namespace thimble::hil

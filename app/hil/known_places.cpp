@@ -52,23 +52,23 @@ std::optional<Vector3d> tip_after(bringup::BenchArm& bench, double seconds,
 HilResult check_home_pose(const HilRig& rig) {
   constexpr const char* kName = "home_pose";
   if (rig.file.is<driver::DeltaArm>() || rig.file.is<driver::ToldArm>()) {
-    return skipped(kName, "This arm finds its own zero.");
+    return skipped(kName, "This arm finds its zero by itself.");
   }
   if (!rig.attended) {
-    return skipped(kName, "Whether it counts from its home pose needs a person (--attended).");
+    return skipped(kName, "A person must bring the arm into its home pose (--attended).");
   }
   auto opened = rig.open(TipHold::kHome);
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
   bringup::BenchArm& bench = **opened;
   std::vector<Vector3d> found;
   for (const char* side : {"left and from below", "right and from above"}) {
-    if (!rig.prompt(fmt::format("Bring the arm exactly into its home pose, coming from the {}, and "
-                                "hold it there for two seconds.",
+    if (!rig.prompt(fmt::format("Bring the arm exactly into its home pose, from the {}, and hold "
+                                "it there for 2 seconds.",
                                 side))) {
-      return not_run(kName, "It was left.");
+      return not_run(kName, "The prompt was cancelled.");
     }
     const auto tip = tip_after(bench, found.empty() ? kHold_s : kChange_s, rig.stop);
-    if (!tip) return broken_off(kName, "It ended before the pose was read.", &bench);
+    if (!tip) return broken_off(kName, "The check ended before the pose was read.", &bench);
     found.push_back(*tip);
   }
   const Vector3d home = home_of(rig.file);
@@ -76,11 +76,11 @@ HilResult check_home_pose(const HilRig& rig) {
   const double beside = std::max((found[0] - home).norm(), (found[1] - home).norm());
   return judged(
       kName,
-      fmt::format("In its home pose the tip is {:.1f} mm beside that of the arm file, and "
-                  "{:.1f} mm apart from both sides.{}",
+      fmt::format("In the home pose the tip is {:.1f} mm from the position of the arm file; the "
+                  "poses from the two sides are {:.1f} mm apart.{}",
                   1e3 * beside, 1e3 * apart,
-                  beside > kHome ? " It got power in another pose, or home_counts or the "
-                                   "links of the file are wrong: run `thimble calibrate`."
+                  beside > kHome ? " The arm was switched on in another pose, or home_counts or "
+                                   "the links of the arm file are wrong. Run `thimble calibrate`."
                                  : ""),
       {{"home_beside", 1e3 * beside, "mm", fmt::format("<= {:g}", 1e3 * kHome), ""},
        {"home_sides_apart", 1e3 * apart, "mm", fmt::format("<= {:g}", 1e3 * kSides), ""}});
@@ -89,12 +89,11 @@ HilResult check_home_pose(const HilRig& rig) {
 HilResult check_known_length(const HilRig& rig, double length) {
   constexpr const char* kName = "known_length";
   if (length == 0) {
-    return skipped(
-        kName,
-        "No length was named (--known-length): the scale of encoders, capstans and links "
-        "is not tested.");
+    return skipped(kName,
+                   "No length was given (--known-length), so the scale of encoders, capstans and "
+                   "links is not tested.");
   }
-  if (!rig.attended) return skipped(kName, "It needs a person who moves the tip (--attended).");
+  if (!rig.attended) return skipped(kName, "A person must move the tip (--attended).");
   auto opened = rig.open(TipHold::kLength);
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
   bringup::BenchArm& bench = **opened;
@@ -106,13 +105,12 @@ HilResult check_known_length(const HilRig& rig, double length) {
     const auto i = static_cast<std::size_t>(axis);
     std::array<Vector3d, 2> ends;
     for (const bool far : {false, true}) {
-      if (!rig.prompt(
-              fmt::format("Hold the tip to the {} mark of {:g} mm along {} for two seconds.",
-                          far ? "second" : "first", 1e3 * length, kAlong[i]))) {
-        return not_run(kName, "It was left.");
+      if (!rig.prompt(fmt::format("Hold the tip on the {} mark of {:g} mm along {} for 2 seconds.",
+                                  far ? "second" : "first", 1e3 * length, kAlong[i]))) {
+        return not_run(kName, "The prompt was cancelled.");
       }
       const auto tip = tip_after(bench, begun ? kChange_s : kHold_s, rig.stop);
-      if (!tip) return broken_off(kName, "It ended before the tip was read.", &bench);
+      if (!tip) return broken_off(kName, "The check ended before the tip was read.", &bench);
       begun = true;
       ends[far ? 1 : 0] = *tip;
     }
@@ -128,12 +126,11 @@ HilResult check_known_length(const HilRig& rig, double length) {
     figures.push_back({fmt::format("length_{}_turned", "xyz"[i]), angle, "degrees",
                        fmt::format("<= {:g}", kAngle), ""});
   }
-  HilResult result = judged(kName, fmt::format("{:g} mm were counted as {}.", 1e3 * length, text),
+  HilResult result = judged(kName, fmt::format("{:g} mm were measured as {}.", 1e3 * length, text),
                             std::move(figures));
   if (result.outcome == HilOutcome::kFailed) {
     result.text +=
-        " Counts per turn, ratio, length of links, base or home position of the arm file are "
-        "wrong, "
+        " Counts per turn, ratio, link lengths, base or home position in the arm file are wrong, "
         "or an encoder loses counts.";
   }
   return result;

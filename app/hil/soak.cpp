@@ -41,24 +41,24 @@ HilResult check_soak(const HilRig& rig, double minutes) {
   const driver::WireCounters after = bench.device().wire_counters();
   bench.device().deactivate();
   const double done = (bench.now() - begin) / 60;
-  if (!whole) return broken_off(kName, fmt::format("It ended after {:.1f} minutes.", done), &bench);
+  if (!whole)
+    return broken_off(kName, fmt::format("The run ended after {:.1f} minutes.", done), &bench);
   const double missing = static_cast<double>(after.missing - before.missing) / ticks;
   std::vector<session::Figure> figures{
       {"soak_minutes", done, "min", "", ""},
-      {"tip_moved", 1e3 * moved, "mm", "> 1", "less: the tip is held, or no motor pulls"},
+      {"tip_moved", 1e3 * moved, "mm", "> 1", "if less, the tip is held or no motor pulls"},
       {"ticks_without_report", 100 * missing, "%", fmt::format("<= {:g}", 100 * kMissingMost), ""},
       {"reports_rejected", static_cast<double>(after.rejected - before.rejected), "", "== 0", ""},
       {"messages_refused", static_cast<double>(after.refused - before.refused), "", "== 0", ""},
       {"tip_left_its_place", left ? 1.0 : 0.0, "", "== 0", ""}};
   for (session::Figure& figure : heat.figures()) figures.push_back(std::move(figure));
-  return judged(
-      kName,
-      fmt::format("For {:.1f} minutes it was pushed with up to {:g} N{}; {:.3f} % of the ticks had "
-                  "no report.",
-                  done, excitation.force_most(),
-                  left ? ", until the tip left the space that it may move in" : "", 100 * missing) +
-          heat.text(),
-      std::move(figures));
+  return judged(kName,
+                fmt::format("The tip was pushed for {:.1f} minutes with up to {:g} N{}; {:.3f} % "
+                            "of the ticks had no report.",
+                            done, excitation.force_most(),
+                            left ? ", until it left its allowed space" : "", 100 * missing) +
+                    heat.text(),
+                std::move(figures));
 }
 
 }  // namespace thimble::hil

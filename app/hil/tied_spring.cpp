@@ -41,12 +41,12 @@ Slope slope_of(const std::vector<Eigen::Vector3d>& rows, const std::vector<doubl
 
 HilResult check_tied_spring(const HilRig& rig, double stiffness) {
   if (stiffness == 0) {
-    return skipped(kName, "No spring of known stiffness was named (--spring).");
+    return skipped(kName, "No spring stiffness was given (--spring).");
   }
-  if (!rig.attended) return skipped(kName, "It needs a person who ties the spring (--attended).");
-  if (!rig.prompt("Tie the spring to the tip and to something firm, along y (to your right), "
-                  "just not slack, and let go.")) {
-    return skipped(kName, "It was left.");
+  if (!rig.attended) return skipped(kName, "A person must tie the spring to the tip (--attended).");
+  if (!rig.prompt("Tie the spring to the tip and to a fixed point, along y (to your right), "
+                  "without slack or tension, and let go.")) {
+    return skipped(kName, "The prompt was cancelled.");
   }
   auto opened = open_active(rig, TipHold::kSpring);
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
@@ -76,8 +76,8 @@ HilResult check_tied_spring(const HilRig& rig, double stiffness) {
     if (off) {
       bench.device().deactivate();
       return broken_off(kName,
-                        "The tip went more than 4 cm, so the spring is not tied to it, or is "
-                        "softer than it was said to be.",
+                        "The tip moved more than 4 cm: the spring is not tied to it, or is softer "
+                        "than the given stiffness.",
                         &bench);
     }
     // A tip follows only after dry friction has reversed: by its size after the beginning, by twice
@@ -89,17 +89,17 @@ HilResult check_tied_spring(const HilRig& rig, double stiffness) {
   }
   bench.device().deactivate();
   if (rows.size() < 6) {
-    return skipped(kName, "The arm's dry friction is too high for so weak a pull.");
+    return skipped(kName, "The dry friction of the arm is too high for this weak pull.");
   }
   const Slope slope = slope_of(rows, way);
   const double ratio = stiffness * slope.value;
   const double spread = 2 * stiffness * slope.error;
   return judged(kName,
-                fmt::format("The motors make {:.3f} +- {:.3f} N for each newton that is asked for, "
-                            "by a spring of {:g} N/m.",
+                fmt::format("The motors produce {:.3f} +- {:.3f} N for each requested newton, "
+                            "measured with a spring of {:g} N/m.",
                             ratio, spread, stiffness),
                 {{"force_ratio", ratio, "", ">= 0.95", ""},
-                 {"force_ratio_above", ratio, "", "<= 1.05", "the same, from above"}});
+                 {"force_ratio_above", ratio, "", "<= 1.05", "upper bound of the same value"}});
 }
 
 }  // namespace thimble::hil

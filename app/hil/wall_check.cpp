@@ -40,8 +40,7 @@ HilResult check_stiffest_wall(const HilRig& rig, bool full) {
   const auto twin = find_edge_of_wall(**twin_bench, rig.file, search, rig.stop);
   if (!twin) {
     return skipped(kName,
-                   "The simulated arm of the file carries no such wall, so there is nothing "
-                   "to compare with: " +
+                   "The simulated arm of the file supports no wall, so there is no reference: " +
                        twin.error().message);
   }
   auto bench = rig.open(TipHold::kFree);
@@ -51,13 +50,14 @@ HilResult check_stiffest_wall(const HilRig& rig, bool full) {
   const MedianInterval ratio = over_twin(*found, *twin);
   return judged(
       kName,
-      fmt::format(
-          "The stiffest wall that gives a tip at {:g} mm/s no energy has {}{:.0f} N/m ({:.0f} to "
-          "{:.0f}, median of {} starts); with the simulated arm of the file {}{:.0f}, by the law "
-          "{:.0f}. Start by start it is {:.3f} times the simulated one's (95 %: {:.3f} to {:.3f}).",
-          1e3 * search.speed, found->grew ? "" : "at least ", found->stiffness.median,
-          found->stiffness.low, found->stiffness.high, search.starts, twin->grew ? "" : "at least ",
-          twin->stiffness.median, law, ratio.median, ratio.low, ratio.high),
+      fmt::format("The stiffest wall that adds no energy to a tip at {:g} mm/s has {}{:.0f} N/m "
+                  "({:.0f} to {:.0f}, median of {} starts). The simulated arm of the file has "
+                  "{}{:.0f} N/m, the law gives {:.0f} N/m. The median ratio of real to simulated "
+                  "stiffness is {:.3f} (95 %: {:.3f} to {:.3f}).",
+                  1e3 * search.speed, found->grew ? "" : "at least ", found->stiffness.median,
+                  found->stiffness.low, found->stiffness.high, search.starts,
+                  twin->grew ? "" : "at least ", twin->stiffness.median, law, ratio.median,
+                  ratio.low, ratio.high),
       {{"stiffest_wall", found->stiffness.median, "N/m", "", ""},
        {"stiffest_wall_low", found->stiffness.low, "N/m", "", "95 % interval of the median"},
        {"stiffest_wall_high", found->stiffness.high, "N/m", "", "95 % interval of the median"},
@@ -65,10 +65,10 @@ HilResult check_stiffest_wall(const HilRig& rig, bool full) {
        {"stiffest_wall_of_twin", twin->stiffness.median, "N/m", "", ""},
        {"wall_over_twin", ratio.median, "", fmt::format(">= {:g}", 1 - kAllowed), ""},
        {"wall_over_twin_above", ratio.median, "", fmt::format("<= {:.4g}", 1 / (1 - kAllowed)),
-        "the same, from above"},
+        "upper bound of the same value"},
        {"wall_over_twin_low", ratio.low, "", "", "95 % interval"},
        {"wall_over_twin_high", ratio.high, "", "", "95 % interval"},
-       {"energy_given", 1e3 * found->given_most, "mJ", "", "by the wall that gave most"},
+       {"energy_given", 1e3 * found->given_most, "mJ", "", "by the wall that added most"},
        {"force_most", found->force_most, "N", fmt::format("<= {:g}", kHilForceMax), ""}});
 }
 

@@ -37,7 +37,7 @@ std::string paragraph(const std::string& text, const char* kind = nullptr) {
                      report::html_text(text));
 }
 
-/// A value to the digit that its interval leaves.
+/// Returns a value rounded to the last digit that is significant for its interval.
 std::string rounded(double value, double plus_minus) {
   if (!(plus_minus > 0)) return fmt::format("{:.5g}", value);
   const int digits = std::max(0, 1 - static_cast<int>(std::floor(std::log10(plus_minus))));
@@ -47,15 +47,15 @@ std::string rounded(double value, double plus_minus) {
 std::string verdict(const bringup::Identified& found, bool bad_fit_is_written) {
   if (found.against.empty()) {
     return "<div class=\"verdict\">" +
-           paragraph("The fit is good: what it leaves is what an arm of this kind leaves.") +
+           paragraph("The fit is good: its residual is normal for an arm of this kind.") +
            "</div>\n";
   }
   std::string text =
       "<div class=\"verdict bad\">" +
       paragraph(std::string("The fit is bad, and ") +
-                (bad_fit_is_written ? "an arm file that holds it says so in every mark"
-                                    : "nothing was written into an arm file") +
-                ". What stands below are the constants of a model that this arm does not follow:");
+                (bad_fit_is_written ? "every constant of it in an arm file is marked as a bad fit"
+                                    : "no arm file was written") +
+                ". The constants below belong to a model that this arm does not follow:");
   for (const std::string& sentence : found.against) text += paragraph(sentence);
   return text + "</div>\n";
 }
@@ -73,7 +73,7 @@ std::string table(const bringup::Identified& found, const scene::ArmFile& file) 
   return text + "</table></div>\n";
 }
 
-/// The masses where the tip was moved, and their range.
+/// Returns the apparent mass at each place of the tip as a table, and their range.
 std::string masses_text(const bringup::LinkFit& fit, const scene::ArmFile& file) {
   std::string text =
       "<div class=\"scroll\"><table><tr><th>place, mm (world)</th><th>along x, g</th><th>along "
@@ -100,14 +100,15 @@ std::string page_text(const bringup::Identified& found, const scene::ArmFile& fi
       "href=\"data:,\">\n<style>{}</style></head><body>\n<h1>{}</h1>\n",
       report::html_text(title), kStyle, report::html_text(title));
   page += paragraph(
-      fmt::format(
-          "{}, {}; {:g} s of motion under at most {:g} N{}.",
-          heading.simulated ? "The simulated arm of this file: no constant of an arm on a desk"
-                            : "Arm " + heading.device,
-          heading.date, heading.seconds, heading.force_most,
-          heading.known_mass > 0
-              ? fmt::format(", and again with {:g} g fixed to the tip", 1e3 * heading.known_mass)
-              : ""),
+      fmt::format("{}, {}; {:g} s of motion under at most {:g} N{}.",
+                  heading.simulated
+                      ? "The simulated arm of this file; the constants do not describe a real arm"
+                      : "Arm " + heading.device,
+                  heading.date, heading.seconds, heading.force_most,
+                  heading.known_mass > 0
+                      ? fmt::format(", and a second time with {:g} g fixed to the tip",
+                                    1e3 * heading.known_mass)
+                      : ""),
       "small");
   page += verdict(found, heading.bad_fit_is_written);
   page +=
@@ -121,10 +122,10 @@ std::string page_text(const bringup::Identified& found, const scene::ArmFile& fi
   if (plots.empty()) {
     page += "<h2>Plots</h2>\n" +
             paragraph(
-                "gnuplot was not found, so nothing is drawn; install it (apt install "
+                "There are no plots because gnuplot is not installed. Install it (apt install "
                 "gnuplot-nox) and identify again. The numbers are in data/.");
   }
-  page += "<h2>What was not identified</h2>\n<ul>\n";
+  page += "<h2>Not identified</h2>\n<ul>\n";
   for (const std::string& sentence : bringup::not_identified(found)) {
     const std::size_t colon = sentence.find(':');
     page +=

@@ -19,13 +19,13 @@ namespace {
 constexpr const char* kSeenInk = "#9aa5b1";
 constexpr const char* kFitInk = "#0072b2";
 constexpr const char* kMarkInk = "#d55e00";
-constexpr int kWidth = 1200;  // pixels
+constexpr int kWidth = 1200;  // pixels, width of a plot
 
 std::string quiet(const char* more) {
   return report::quiet_style() + "set key off\nset tics font ',14'\n" + more;
 }
 
-/// Three panels one below the other, a title at each one's left.
+/// Returns the gnuplot text of three panels on top of each other, with a title on the left of each.
 std::string stacked(const std::string& commands, const std::string& unit,
                     const std::array<std::string, 3>& plots) {
   std::string text = quiet("set tmargin 0.6\nset bmargin 0.6\nset lmargin 11\nset rmargin 2\n") +
@@ -39,7 +39,7 @@ std::string stacked(const std::string& commands, const std::string& unit,
   return text + "unset multiplot\n";
 }
 
-/// Three panels side by side, one for each joint or axis.
+/// Returns the gnuplot text of three panels side by side, one for each joint or axis.
 std::string beside(const std::string& commands, const std::string& x, const std::string& y,
                    const std::array<std::string, 3>& plots,
                    const std::array<const char*, 3>& titles = {"joint 1", "joint 2", "joint 3"}) {
@@ -102,7 +102,7 @@ std::string masses_plot() {
         "yerrorbars pt 7 ps 0.8 lw 1.5 lc rgb '{2}'",
         i, kFitInk, report::kInk);
   }
-  return beside("", "by the constants [g]", "seen [g]", plots, {"along x", "along y", "along z"});
+  return beside("", "fitted [g]", "measured [g]", plots, {"along x", "along y", "along z"});
 }
 
 std::string lines_plot(const bringup::Identified& identified) {
@@ -111,7 +111,7 @@ std::string lines_plot(const bringup::Identified& identified) {
     std::string marks = "unset arrow\nunset label\n";
     if (identified.constants.cables) {
       const bringup::CableConstants& cable = (*identified.constants.cables)[i];
-      // A dip has room above it, a peak below.
+      // The labels use the free room: above a dip, below a peak.
       for (const auto& [at, name, place] :
            {std::tuple{cable.antiresonance.value, "antiresonance", "0.97 right"},
             std::tuple{cable.resonance.value, "resonance", "0.03 left"}}) {
@@ -130,7 +130,7 @@ std::string lines_plot(const bringup::Identified& identified) {
                            i, kFitInk, report::kInk);
   }
   return beside("set logscale xy\nset xrange [14:400]\nset xtics (15, 30, 60, 120, 240)\n",
-                "frequency [Hz]", "motion over that of stiff cables", plots);
+                "frequency [Hz]", "motion relative to stiff cables", plots);
 }
 
 }  // namespace
@@ -159,36 +159,36 @@ driver::Result<std::vector<IdentifyPlot>> draw_identified(const bringup::Identif
     }
   }
   std::vector<IdentifyPlot> shown{
-      {"identify_fit", "Fit over data",
-       "Acceleration of the tip along the axes of the base, each point the mean over a piece of 60 "
-       "ms, for two seconds from the middle of the motion. Dots: seen. Line: by the constants."},
-      {"identify_rest", "What the fit leaves",
-       "The same, seen less fitted, over the whole motion. Between the dashed lines lies what the "
-       "steps of the encoders alone would leave (two standard deviations)."},
-      {"identify_friction", "Friction over speed, joint by joint",
-       "What moved beside motors, mass and weight, turned into torques at the joints. Faint: "
-       "pieces "
-       "of 60 ms. Dots: their medians with quartiles. Line: the constants of friction on the same "
-       "motion. A step at zero is dry friction, a slope viscous friction."}};
+      {"identify_fit", "Fit and data",
+       "Acceleration of the tip along the axes of the base. Each point is the mean over a segment "
+       "of 60 ms; the plot shows two seconds from the middle of the motion. Dots: measured. Line: "
+       "fitted."},
+      {"identify_rest", "Residual of the fit",
+       "Measured minus fitted acceleration over the whole motion. The dashed lines mark the noise "
+       "of the encoder steps (two standard deviations)."},
+      {"identify_friction", "Friction over speed for each joint",
+       "Remainder after motors, mass and weight, as torques at the joints. Faint: segments of 60 "
+       "ms. Dots: their medians with quartiles. Line: the fitted friction on the same motion. A "
+       "step at zero is dry friction; a slope is viscous friction."}};
   if (identified.play.friction.seen) {
-    shown.back().caption += " The motors' own friction, which was found beside it, is taken off.";
+    shown.back().caption +=
+        " The friction of the motors, which was fitted separately, is subtracted.";
   }
   std::vector<std::string> commands{fit_plot(), rest_plot(identified.bare.noise), friction_plot()};
   if (lines) {
     shown.push_back(
-        {"identify_lines", "Cables: the answer to 48 small forces",
-         "How far each joint oscillates over what it would if no cable stretched. Dots: seen, with "
-         "what the noise beside the line allows; lines that the noise hides are left out. Line: by "
-         "the constants. A dip is the link's oscillation on its cable, a peak that of motor "
-         "against link; all at 1: nothing stretches."});
+        {"identify_lines", "Cables: response to 48 small forces",
+         "Oscillation of each joint relative to an arm whose cables do not stretch. Dots: "
+         "measured, with the interval from the noise near that frequency; frequencies hidden by "
+         "noise are omitted. Line: fitted. A dip is the oscillation of the link on its cable; a "
+         "peak is that of motor against link. If no cable stretches, all values are 1."});
     commands.push_back(lines_plot(identified));
   }
   if (links) {
-    shown.push_back(
-        {"identify_masses", "Apparent mass over the workspace",
-         "Mass at the tip along the axes of the base, a dot for each place that it was moved "
-         "about: as it was seen there, with its 95 % interval, over that by the constants of tip "
-         "and links. The nearer to the line the better."});
+    shown.push_back({"identify_masses", "Apparent mass over the workspace",
+                     "Mass at the tip along the axes of the base, with one dot for each place: the "
+                     "mass measured there, with its 95 % interval, over the mass fitted with tip "
+                     "and links. Dots on the line agree exactly."});
     commands.push_back(masses_plot());
   }
   if (!report::has_gnuplot()) return std::vector<IdentifyPlot>{};

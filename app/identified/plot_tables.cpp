@@ -16,14 +16,14 @@
 namespace thimble::identified {
 namespace {
 
-constexpr double kExcerpt = 2;  // s
-constexpr double kGap = 0.02;   // s, more than from piece to piece
+constexpr double kExcerpt = 2;  // s, from the middle of the motion
+constexpr double kGap = 0.02;   // s, more than the distance of two adjacent pieces
 constexpr std::size_t kPointsMost = 1500;
-constexpr int kSteps = 21;               // of speed
-constexpr std::size_t kInStepLeast = 8;  // pieces of motion, for a median
+constexpr int kSteps = 21;               // intervals of speed for the medians
+constexpr std::size_t kInStepLeast = 8;  // min. number of pieces for a median
 constexpr int kFrequencies = 400;
 
-/// Writes a block for each axis: `line(number of the equation, time)`.
+/// Writes a block of lines for each axis; `line(equation number, time)` returns one line.
 template <class Line>
 std::string by_axis(const bringup::FittedMotion& motion, double from, double until,
                     const Line& line) {
@@ -34,7 +34,7 @@ std::string by_axis(const bringup::FittedMotion& motion, double from, double unt
     for (std::size_t i = 0; i < equations.size(); ++i) {
       const double time = equations[i].middle * motion.motion().dt;
       if (equations[i].axis != axis || time < from || time > until) continue;
-      // A line ends where pieces were left out.
+      // An empty line interrupts the plotted line where pieces were omitted.
       if (time - before > kGap) text += "\n";
       text += line(i, time);
       before = time;
@@ -44,7 +44,7 @@ std::string by_axis(const bringup::FittedMotion& motion, double from, double unt
   return text;
 }
 
-/// The value below which a share of some lies.
+/// Returns the quantile of some values: `share` of them are below it.
 double quantile(std::vector<double> values, double share) {
   const auto at =
       values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -52,7 +52,7 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-/// The constants of an arm like this whose cables do not stretch.
+/// Returns the constants of the same arm with cables that do not stretch.
 bringup::TwoMassTheta stiff_of(const bringup::CableFit& lines) {
   bringup::TwoMassTheta stiff = lines.stretches ? lines.elastic.theta : lines.rigid.theta;
   stiff.tail<6>().setZero();
@@ -64,7 +64,7 @@ bringup::TwoMassTheta stiff_of(const bringup::CableFit& lines) {
 std::string fit_table(const bringup::FittedMotion& motion) {
   const double middle =
       0.5 * static_cast<double>(motion.motion().samples.size()) * motion.motion().dt;
-  return "# time s, acceleration seen, by the fit, m/s^2\n" +
+  return "# time s, acceleration measured, fitted, m/s^2\n" +
          by_axis(motion, middle - kExcerpt / 2, middle + kExcerpt / 2,
                  [&](std::size_t i, double time) {
                    const double left = motion.equations.equations()[i].left;
@@ -74,7 +74,7 @@ std::string fit_table(const bringup::FittedMotion& motion) {
 }
 
 std::string rest_table(const bringup::FittedMotion& motion) {
-  return "# time s, what the fit leaves, m/s^2\n" +
+  return "# time s, residual of the fit, m/s^2\n" +
          by_axis(motion, 0, HUGE_VAL, [&](std::size_t i, double time) {
            return fmt::format("{:.4f} {:.6g}\n", time,
                               motion.residual.rest[static_cast<Eigen::Index>(i)]);
@@ -120,7 +120,7 @@ std::string friction_medians(const bringup::FittedMotion& motion,
 }
 
 std::string masses_table(const bringup::Identified& identified, const scene::ArmFile& file) {
-  std::string text = "# apparent mass by the constants, as seen there, half its interval, kg\n";
+  std::string text = "# apparent mass fitted, measured, half its interval, kg\n";
   const std::vector<bringup::PlaceMass> places =
       bringup::masses_at_places(*identified.over.fit, file);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -136,7 +136,7 @@ std::string masses_table(const bringup::Identified& identified, const scene::Arm
 std::string lines_table(const bringup::Identified& identified, double dt) {
   const bringup::CableFit& lines = identified.lines;
   const bringup::TwoMassTheta stiff = stiff_of(lines);
-  std::string text = "# frequency Hz, motion over that of stiff cables, half the interval\n";
+  std::string text = "# frequency Hz, motion relative to stiff cables, half the interval\n";
   for (int joint = 0; joint < 3; ++joint) {
     for (std::size_t i = 0; i < identified.spectrum.lines.size(); ++i) {
       const bringup::SpectralLine& line = identified.spectrum.lines[i];
@@ -144,7 +144,7 @@ std::string lines_table(const bringup::Identified& identified, double dt) {
           std::abs(bringup::two_mass_answer(stiff, line, lines.JTJ, dt, false)[joint]);
       const double seen = std::abs(line.q[joint]) / rigid;
       const double error = bringup::kNormal95 * lines.noise[i][joint] / rigid;
-      // What the noise hides says nothing.
+      // Points that are hidden by noise are omitted.
       if (!(error < 0.5 * seen)) continue;
       text +=
           fmt::format("{:.6g} {:.6g} {:.6g}\n", line.omega / (2 * std::numbers::pi), seen, error);
@@ -157,7 +157,7 @@ std::string lines_table(const bringup::Identified& identified, double dt) {
 std::string resonance_table(const bringup::Identified& identified, double dt) {
   const bringup::CableFit& lines = identified.lines;
   const bringup::TwoMassTheta stiff = stiff_of(lines);
-  std::string text = "# frequency Hz, motion over that of stiff cables by the constants\n";
+  std::string text = "# frequency Hz, fitted motion relative to stiff cables\n";
   for (int joint = 0; joint < 3; ++joint) {
     for (int k = 0; k <= kFrequencies; ++k) {
       const double share = static_cast<double>(k) / kFrequencies;

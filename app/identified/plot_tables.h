@@ -6,31 +6,32 @@
 
 namespace thimble::identified {
 
-// The numbers behind the plots, as gnuplot reads them; blocks of one file, two empty lines between
-// them, go axis by axis or joint by joint.
+// Tables of the plots in gnuplot's format. A file has one block per axis or joint, separated by two
+// empty lines.
 
-/// Returns acceleration as it was seen and as the fit says, for the two seconds in the middle.
+/// Returns the measured and the fitted acceleration for two seconds from the middle of the motion.
 std::string fit_table(const bringup::FittedMotion& motion);
 
-/// Returns what the fit leaves of the acceleration over the whole motion.
+/// Returns the residual acceleration of the fit over the whole motion.
 std::string rest_table(const bringup::FittedMotion& motion);
 
-/// Returns friction over speed of the joints: each piece of motion, at most some thousand of them.
+/// Returns the friction of the joints over their speed, with a point for each piece of motion; at
+/// most a few thousand points.
 std::string friction_table(const bringup::FittedMotion& motion, const bringup::Identified& found);
 
-/// Returns the same as medians over equal steps of speed, with the quartiles and the median of the
-/// fit.
+/// Returns the same friction as medians over equal intervals of speed, with quartiles and the
+/// median of the fit.
 std::string friction_medians(const bringup::FittedMotion& motion, const bringup::Identified& found);
 
-/// Returns the apparent mass by the constants and as it was seen at each place, an axis each.
-/// Precondition: links were seen.
+/// Returns the fitted and the measured apparent mass at each place, with a block for each axis.
+/// Precondition: links were detected.
 std::string masses_table(const bringup::Identified& identified, const scene::ArmFile& file);
 
-/// Returns how far the joints oscillate at each line over what they would with cables that do not
-/// stretch, with the interval that the noise beside the line makes.
+/// Returns the oscillation of the joints at each line relative to that with cables that do not
+/// stretch, with the interval from the noise near the line.
 std::string lines_table(const bringup::Identified& identified, double dt);
 
-/// Returns the same by the constants that were found, over all frequencies.
+/// Returns the same ratio computed from the fitted constants, over all frequencies.
 std::string resonance_table(const bringup::Identified& identified, double dt);
 
 }  // namespace thimble::identified

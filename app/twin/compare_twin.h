@@ -48,10 +48,11 @@ struct TwinSpectrum {
 /// Difference between a twin and its arm.
 struct TwinComparison {
   std::array<TwinAxis, 3> axes{};
-  double error_rms = 0;              ///< Over all axes, m.
-  double step_error = 0;             ///< Part of it that is due to the encoders' steps, m.
-  double seconds = 0;                ///< Compared time.
-  std::vector<TwinRemedy> remedies;  ///< Best first.
+  double error_rms = 0;   ///< RMS error over all axes, m.
+  double step_error = 0;  ///< Part of it that is due to the encoders' steps, m.
+  double seconds = 0;     ///< Compared time, s.
+  /// Constants in the order of their improvement, the best first.
+  std::vector<TwinRemedy> remedies;
   /// Constants that together improve the twin more than any of them does by itself, each with its
   /// final value. Empty if one is enough, or if others add nothing. Their `error_rms` is that of
   /// all.

@@ -59,10 +59,10 @@ driver::Result<Relive> Relive::make(const TwinMotion& motion, double length) {
     time += static_cast<double>(size) * motion.dt;
   }
   if (made.windows_.empty()) {
-    return driver::Error{fmt::format(
-        "No stretch of the recording is as long as a window of {:g} s, without missing ticks and "
-        "under forces; take shorter ones (--window).",
-        length)};
+    return driver::Error{
+        fmt::format("No part of the recording has a window of {:g} s under forces without missing "
+                    "ticks. Use shorter windows (--window).",
+                    length)};
   }
   const double first = made.windows_.front().time;
   for (TwinWindow& window : made.windows_) window.time -= first;

@@ -13,8 +13,9 @@ using Numbers = Eigen::Matrix<double, StartFit::kNumbers, 1>;
 constexpr int kRounds = 6;  // max. rounds of Gauss-Newton
 constexpr int kAnew = 3;    // max. number of times that the first fit computes its differences
 constexpr int kHalves = 2;  // halvings of a step without improvement
-constexpr double kSettled = 1e-4;  // of the square: a smaller gain is none
-constexpr double kRidge = 1e-9;    // of a number's own: for cables too stiff to show their rate
+constexpr double kSettled = 1e-4;  // share of the squared error; a smaller gain ends the search
+// Share of each diagonal element; needed for cables too stiff to show their rate
+constexpr double kRidge = 1e-9;
 
 /// Steps of the differences: a fraction of the encoders' resolution of each, so that friction
 /// reverses at the same tick. [chosen]

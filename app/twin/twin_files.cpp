@@ -67,9 +67,8 @@ std::size_t worst_window(const TwinTrace& trace) {
 std::string motion_table(const TwinTrace& trace) {
   std::ostringstream text;
   text.precision(9);
-  text << "# time s, recorded less a straight line in x, y, z mm, twin less the same line in x, y, "
-          "z "
-          "mm\n";
+  text << "# time s, recorded minus a straight line in x, y, z mm, twin minus the same line in x, "
+          "y, z mm\n";
   const std::size_t w = worst_window(trace);
   for (std::size_t j = 0; j < trace.windows[w].seen.size(); ++j) {
     if (!trace.windows[w].seen[j]) continue;
@@ -107,8 +106,8 @@ std::string plots(const char* file, const char* style, int first, const std::str
 driver::Result<void> draw(const std::string& title, const std::filesystem::path& folder) {
   const report::Plot motion{
       "twin_motion", 1600, 900,
-      heading("Where the twin is farthest off: " + title) +
-          "set xlabel 'time [s]'\nset ylabel 'tip less a straight line [mm]'\n" +
+      heading("Window with the largest error of the twin: " + title) +
+          "set xlabel 'time [s]'\nset ylabel 'tip minus a straight line [mm]'\n" +
           plots("twin_motion", "lines lw 2", 2, "recorded", false) +
           plots("twin_motion", "lines lw 2 dt 2", 5, "twin", true) + "\n"};
   const report::Plot error{
@@ -144,7 +143,8 @@ std::vector<session::Figure> twin_figures(const TwinComparison& found, double fi
         {fmt::format("motion_{}", axis.name), kMicro * axis.motion_rms, "um", "", "RMS"});
   }
   figures.push_back({"error", kMicro * found.error_rms, "um", "", "RMS of all axes"});
-  figures.push_back({"error_of_encoders", kMicro * found.step_error, "um", "", "what steps leave"});
+  figures.push_back(
+      {"error_of_encoders", kMicro * found.step_error, "um", "", "from encoder steps"});
   figures.push_back({"compared", found.seconds, "s", "", ""});
   for (const TwinRemedy& remedy : found.remedies) {
     figures.push_back(
@@ -164,10 +164,10 @@ std::string twin_table(const TwinComparison& found) {
                         kMicro * axis.error_rms, kMicro * axis.motion_rms);
   }
   text += fmt::format(
-      "{:.1f} s compared; error {:.3g} um, of which the encoders' steps leave {:.3g}.\n",
+      "{:.1f} s compared; error {:.3g} um, of which the encoder steps cause {:.3g} um.\n",
       found.seconds, kMicro * found.error_rms, kMicro * found.step_error);
   text += fmt::format("\n{:<34} {:>10} {:>10} {:<6} {:>12} {:>9}\n", "constant", "file", "best", "",
-                      "error by it", "expected");
+                      "error change", "expected");
   for (const TwinRemedy& remedy : found.remedies) {
     text += fmt::format("{:<34} {:>10.5g} {:>10.5g} {:<6} {:>10.1f} % {:>7.1f} %\n", remedy.key,
                         remedy.value, remedy.best, remedy.unit,
@@ -177,15 +177,16 @@ std::string twin_table(const TwinComparison& found) {
   if (found.has_remedy()) {
     const TwinRemedy& first = found.remedies.front();
     text += fmt::format(
-        "\n{} reduces the error most: {:.5g} {} in place of {:.5g} makes {:.3g} um of {:.3g} um.\n",
+        "\n{} reduces the error most: with {:.5g} {} instead of {:.5g} it is {:.3g} um instead of "
+        "{:.3g} um.\n",
         first.key, first.best, first.unit, first.value, kMicro * first.error_rms,
         kMicro * found.error_rms);
   } else {
-    text += "\nNo other value of a single constant would reduce the error by 1 %.\n";
+    text += "\nNo change of a single constant would reduce the error by 1 %.\n";
   }
   if (!found.together.empty()) {
-    text +=
-        fmt::format("Together these make {:.3g} um:\n", kMicro * found.together.front().error_rms);
+    text += fmt::format("Together these changes reduce it to {:.3g} um:\n",
+                        kMicro * found.together.front().error_rms);
     for (const TwinRemedy& one : found.together) {
       text += fmt::format("  {}: {:.5g} {} instead of {:.5g}\n", one.key, one.best, one.unit,
                           one.value);
@@ -193,8 +194,8 @@ std::string twin_table(const TwinComparison& found) {
   }
   if (found.missed() > TwinComparison::kMissed) {
     text += fmt::format(
-        "Even then the twin misses {:.0f} % of the motion: several constants are wrong, something "
-        "held the tip, or the arm has something that its file does not name.\n",
+        "The remaining error is {:.0f} % of the motion: several constants are wrong, something "
+        "held the tip, or the arm has a property that its file does not contain.\n",
         100 * found.missed());
   }
   return text;

@@ -304,9 +304,9 @@ std::vector<session::Figure> force_figures(const TwinForces& forces) {
         {fmt::format("force_of_motors_{}", axis.name), axis.motors_rms, "N", "", "RMS"});
     figures.push_back({fmt::format("force_needed_{}", axis.name), axis.needed_rms, "N", "", "RMS"});
     figures.push_back({fmt::format("other_force_{}", axis.name), axis.other_rms, "N", "",
-                       "RMS; a hand's, or an error of the file"});
+                       "RMS; from a hand, or from an error of the file"});
   }
-  figures.push_back({"other_force_of_encoders", forces.noise, "N", "", "what steps leave"});
+  figures.push_back({"other_force_of_encoders", forces.noise, "N", "", "from encoder steps"});
   if (forces.hand_held()) {
     figures.push_back({"hand_stiffness", forces.hand.stiffness, "N/m", "", ""});
     figures.push_back({"hand_damping", forces.hand.damping, "N s/m", "", ""});
@@ -316,11 +316,11 @@ std::vector<session::Figure> force_figures(const TwinForces& forces) {
 }
 
 std::string force_table(const TwinForces& forces) {
-  std::string text = fmt::format("{:<5} {:>12} {:>16} {:>16}\n", "axis", "motors gave",
-                                 "motion needs", "something else");
+  std::string text =
+      fmt::format("{:<5} {:>12} {:>16} {:>16}\n", "axis", "motors", "motion", "other");
   for (const TwinForceAxis& axis : forces.axes) {
     if (axis.counted == 0) {
-      text += fmt::format("{:<5} {:>12}\n", axis.name, "stood still");
+      text += fmt::format("{:<5} {:>12}\n", axis.name, "at rest");
       continue;
     }
     text += fmt::format("{:<5} {:>9.1f} mN {:>13.1f} mN {:>13.1f} mN\n", axis.name,
@@ -329,22 +329,20 @@ std::string force_table(const TwinForces& forces) {
   if (forces.hand_held()) {
     const TwinHand& hand = forces.hand;
     text += fmt::format(
-        "Something held the tip like a hand of {:.2g} N/m, {:.2g} N s/m and {:.2g} kg: {:.0f} % of "
-        "what the motors did not give. Do not believe what is said of the constants above; record "
-        "without a hand.\n",
+        "Something held the tip like a hand of {:.2g} N/m, {:.2g} N s/m and {:.2g} kg, which "
+        "explains {:.0f} % of the other force. The values of the constants above are not valid. "
+        "Record without a hand.\n",
         hand.stiffness, hand.damping, std::max(0.0, hand.mass), 100 * hand.explained);
   } else if (forces.constants_explain) {
     text +=
-        "The constants of the file are wrong: with the values above nothing but the motors acted "
-        "on "
-        "the tip.\n";
+        "The constants of the file are wrong: with the values above, only the motors acted on the "
+        "tip.\n";
   } else if (forces.other_acted()) {
     text +=
-        "More acted on the tip than the motors gave, and not like a hand that keeps still: "
-        "constants "
-        "of the file are wrong, or a hand moved the tip.\n";
+        "Forces other than those of the motors acted on the tip, but not those of a hand at rest: "
+        "constants of the file are wrong, or a hand moved the tip.\n";
   } else {
-    text += "Nothing but the motors acted on the tip, as far as its encoders can tell.\n";
+    text += "Only the motors acted on the tip, within the resolution of the encoders.\n";
   }
   return text;
 }

@@ -33,16 +33,16 @@ driver::Result<scene::ArmFile> arm_of(const session::RecordingInfo& info) {
 
 driver::Result<void> check_file(const scene::ArmFile& file) {
   if (!file.can_simulate || !(file.is<driver::SerialArm>() || file.is<driver::LinkageArm>())) {
-    return driver::Error{fmt::format(
-        "The arm {} has no twin: a file with a section `simulation` of a serial arm or a Polhem is "
-        "needed.",
-        file.name)};
+    return driver::Error{
+        fmt::format("The arm {} has no twin. A twin needs a file of a serial arm or a Polhem with "
+                    "a section `simulation`.",
+                    file.name)};
   }
   const auto& wire = file.simulated.wire;
   if (1e-9 * static_cast<double>(wire.delay_in_ns + wire.delay_out_ns) >
       TwinMotion::kLead - 0.003) {
     return driver::Error{
-        fmt::format("The delays of the arm file are above the {:g} ms that a twin can have.",
+        fmt::format("The delays of the arm file exceed {:g} ms, the maximum for a twin.",
                     1e3 * (TwinMotion::kLead - 0.003))};
   }
   return {};
@@ -89,20 +89,20 @@ class Reader {
     std::nth_element(steps.begin(), middle, steps.end());
     const double dt = 1e-9 * static_cast<double>(*middle);
     if (!(recording_.info.rate > 0) || std::abs(dt * recording_.info.rate - 1) > 0.1) {
-      return driver::Error{fmt::format(
-          "The recording says that it has {:g} ticks a second, but its times say {:.4g}: it is "
-          "damaged.",
-          recording_.info.rate, 1 / dt)};
+      return driver::Error{
+          fmt::format("The recording is damaged: its header gives {:g} ticks per second, but its "
+                      "times give {:.4g}.",
+                      recording_.info.rate, 1 / dt)};
     }
     motion_.dt = 1 / recording_.info.rate;
     return {};
   }
 
   static driver::Error too_short() {
-    return driver::Error{fmt::format(
-        "The recording holds less than {:g} s of motion under forces, which is too short to "
-        "compare. `thimble identify --record FILE` makes a good one.",
-        kShortest)};
+    return driver::Error{
+        fmt::format("The recording has less than {:g} s of motion under forces, too little for a "
+                    "comparison. Record with `thimble identify --record FILE`.",
+                    kShortest)};
   }
 
   /// Returns whether no tick between two ticks was missed, and neither was late.
@@ -148,32 +148,31 @@ class Reader {
   driver::Result<TwinMotion> judged() {
     if (off_ > kSameTip) {
       return driver::Error{fmt::format(
-          "The recording is of another arm than {}: by this file's geometry its joint angles put "
-          "the tip {:.3g} mm beside where it was. It was made with the arm {}.",
+          "The recording is not from the arm {}: with the geometry of this file its joint angles "
+          "put the tip {:.3g} mm from the recorded position. It was made with the arm {}.",
           file_.name, 1e3 * off_, recorded_.name)};
     }
     if (touch_) {
-      return driver::Error{fmt::format(
-          "The tip touches objects between {:.3g} and {:.3g} s of the recording, so a hand held "
-          "the "
-          "arm, and the twin has none. Compare a part of free motion by --from and --until, or a "
-          "recording of `thimble identify --record FILE`.",
-          touch_->first, touch_->second)};
+      return driver::Error{
+          fmt::format("The tip touches objects between {:.3g} and {:.3g} s of the recording, so a "
+                      "hand held the arm; the twin has no hand. Select free motion with --from and "
+                      "--until, or use a recording of `thimble identify --record FILE`.",
+                      touch_->first, touch_->second)};
     }
     std::size_t left = 0;
     for (const auto& stretch : motion_.stretches) left += stretch.size();
     if (static_cast<double>(left) * motion_.dt < kShortest) return too_short();
     if (std::sqrt(force_square_ / static_cast<double>(taken_)) < kForceSeen) {
       return driver::Error{
-          "The recording holds no force to speak of, so that nothing drove the twin. `thimble "
-          "identify --record FILE` makes one that does."};
+          "The recording has no significant force to drive the twin. Record with `thimble identify "
+          "--record FILE`."};
     }
     motion_.step_error = std::sqrt(step_square_ / static_cast<double>(taken_));
     for (std::string& sentence : unseen_differences(recorded_, file_)) {
       motion_.told.push_back(std::move(sentence));
     }
     if (!recording_.complete) {
-      motion_.told.push_back("The recording was cut off; what is there is compared.");
+      motion_.told.push_back("The recording is truncated; only the existing part is compared.");
     }
     return std::move(motion_);
   }
@@ -197,14 +196,14 @@ driver::Result<TwinMotion> twin_motion(const session::Recording& recording,
   const auto recorded = arm_of(recording.info);
   if (!recorded) {
     return driver::Error{
-        "The arm file that the recording holds makes no sense, so that its currents are not known: "
-        "it is damaged. " +
+        "The recording is damaged: the currents are unknown because the arm file in it is not "
+        "valid. " +
         recorded.error().message};
   }
   if (recorded->model.geometry.index() != file.model.geometry.index()) {
     return driver::Error{
-        fmt::format("The recording is of another arm than {}: it was made with the "
-                    "arm {}, which is of another build.",
+        fmt::format("The recording is not from the arm {}: it was made with the arm {}, which has "
+                    "a different geometry.",
                     file.name, recorded->name)};
   }
   return Reader(recording, file, *recorded).run(span);

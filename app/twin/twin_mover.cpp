@@ -66,8 +66,8 @@ driver::Result<std::unique_ptr<TwinMover>> make_twin_mover(const TwinMotion& mot
                                                            const scene::ArmFile& file) {
   if (file.simulated.links.named()) {
     return driver::Error{
-        "The arm file names links (simulation.links), of which there is no twin yet; take that "
-        "section out of a copy and name it by --arm."};
+        "Twins of arms with simulation.links are not supported yet. Remove the section from a copy "
+        "of the arm file and pass the copy with --arm."};
   }
   if (file.simulated.drive_train.named()) return make_drive_train_twin(motion, file);
   const auto dynamics = device_sim::AxisDynamics::make(file.simulated.plant, {});

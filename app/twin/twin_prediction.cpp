@@ -35,7 +35,7 @@ class WallStarts {
   /// Returns whether the hand comes to rest from more than half of the starts, on walls of about
   /// this stiffness (N/m).
   driver::Result<bool> mostly_rest(double stiffness) const {
-    int more = 0;  // excess of rests over others
+    int more = 0;  // number of starts that rest minus those that do not
     for (int i = 0; i < kTriesMost && std::abs(more) < kClear; ++i) {
       const auto touch = from(i, stiffness);
       if (!touch) return touch.error();
@@ -103,21 +103,20 @@ driver::Result<TwinPrediction> twin_prediction(const scene::ArmFile& file) {
 
 std::vector<session::Figure> prediction_figures(const TwinPrediction& found) {
   const std::string wall =
-      fmt::format("off a wall of {:g} N/m, by a pull of {:g} N over {:g} mm", found.drop.stiffness,
-                  found.drop.pull, 1e3 * found.drop.height);
+      fmt::format("from a wall of {:g} N/m, with a pull of {:g} N over {:g} mm",
+                  found.drop.stiffness, found.drop.pull, 1e3 * found.drop.height);
   return {{"predicted_stiffest_wall", found.stiffest_wall, "N/m", "",
-           "on which the hand of the arm file comes to rest from half of its starts"},
+           "wall on which the hand of the arm file comes to rest from half of its starts"},
           {"predicted_restitution", found.bounce.restitution, "", "", wall},
           {"predicted_flight", found.bounce.flight, "s", "", wall}};
 }
 
 std::string prediction_text(const TwinPrediction& found) {
   return fmt::format(
-      "Along ({:.2g}, {:.2g}, {:.2g}) at home the hand of the file comes to rest on a wall of "
-      "{:.0f} "
-      "N/m from half of its starts, and on softer ones from more.\n"
-      "A free tip that {:g} N draw {:g} mm onto a wall of {:g} N/m leaves it with {:.2f} times its "
-      "speed and is back after {:.0f} ms.\n",
+      "Prediction along ({:.2g}, {:.2g}, {:.2g}) at home: the hand of the file comes to rest on a "
+      "wall of {:.0f} N/m from half of its starts, and on softer walls from more.\nA free tip, "
+      "pulled by {:g} N over {:g} mm onto a wall of {:g} N/m, leaves the wall with {:.2f} times "
+      "its speed and returns after {:.0f} ms.\n",
       found.n_W.x(), found.n_W.y(), found.n_W.z(), found.stiffest_wall, found.drop.pull,
       1e3 * found.drop.height, found.drop.stiffness, found.bounce.restitution,
       1e3 * found.bounce.flight);

@@ -23,15 +23,14 @@ std::vector<std::string> unseen_differences(const scene::ArmFile& recorded,
   const auto differ = [&all](const std::string& key, double was, double is, const char* what) {
     if (!differs(was, is)) return;
     all.push_back(
-        fmt::format("{} is {:g} in the recording's arm file and {:g} in this one. The motion does "
-                    "not show which "
-                    "is right: {}.",
+        fmt::format("{} is {:g} in the arm file of the recording and {:g} in this one. The motion "
+                    "does not show which is correct: {}.",
                     key, was, is, what));
   };
   constexpr const char* kLength =
       "move the tip by a known length (thimble hil --attended --known-length 0.1)";
   constexpr const char* kHome =
-      "bring the arm into its home pose from two sides (thimble hil --attended --check home_pose)";
+      "approach the home pose from two sides (thimble hil --attended --check home_pose)";
   constexpr const char* kPush = "run `thimble feel-check`";
   for (std::size_t i = 0; i < 3; ++i) {
     const auto key = [i](const char* name) { return fmt::format("joints.{}[{}]", name, i + 1); };
@@ -53,22 +52,21 @@ std::vector<std::string> unseen_differences(const scene::ArmFile& recorded,
                                    turn(1, 0) - turn(0, 1));
   const double turned = math::atan2(twice_sine.norm(), turn.trace() - 1);
   if (turned > 1e-6) {
-    all.push_back(fmt::format(
-        "The base of this file is turned by {:.3g} degrees from that of the recording's. The "
-        "motion "
-        "does not show which is right unless something hangs on the tip: hang a known mass on it "
-        "(thimble hil --attended --known-mass 0.03).",
-        turned * 180 / std::numbers::pi));
+    all.push_back(
+        fmt::format("The base of this file is rotated by {:.3g} degrees from that of the "
+                    "recording. The motion does not show which is correct without a load on the "
+                    "tip: hang a known mass on it (thimble hil --attended --known-mass 0.03).",
+                    turned * 180 / std::numbers::pi));
   }
   return all;
 }
 
 std::vector<std::string> never_seen() {
   return {
-      "counts per turn, ratios and lengths (a known length moved shows them)",
-      "home position and signs of the encoders (the home pose taken from two sides, and the feel "
-      "check)",
-      "forces in newtons and the tilt of the base (a known mass hung on the tip)",
+      "counts per turn, ratios and lengths (to test them, move the tip by a known length)",
+      "home position and signs of the encoders (to test them, approach the home pose from two "
+      "sides and run the feel check)",
+      "forces in newtons and the tilt of the base (to test them, hang a known mass on the tip)",
   };
 }
 

@@ -16,7 +16,7 @@ assert 500 < figures["stiffest_wall_low"] < figures["stiffest_wall_high"] < 2000
 assert figures["wall_over_twin_low"] <= figures["wall_over_twin"] <= figures["wall_over_twin_high"]
 assert figures["force_most"] <= 1, figures
 soak = next(one for one in whole["checks"] if one["name"] == "soak")
-assert "would come to" in soak["text"], soak
+assert "would reach" in soak["text"], soak
 heat = {one["name"]: one["value"] for one in soak["figures"]}
 assert 0 < heat["motor_heat"] < heat["heat_in_the_end"] < 0.2 and heat["heat_from_model"] < 1e-4, heat'
 expect 0 'property name="heat_in_the_end" value="0\.[0-9]+ of the limit"' cat good.xml

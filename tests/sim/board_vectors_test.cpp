@@ -1,4 +1,4 @@
-// From the bytes of a board to the tip, as the published host programs work it out.
+// Tip position from the bytes of a board, compared with the published host programs.
 #include "usb/board_vectors.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 class BoardVectors : public testing::TestWithParam<usb_test::BoardVector> {};
 
-TEST_P(BoardVectors, PutTheTipWhereThePublishedProgramSeesIt) {
+TEST_P(BoardVectors, TipMatchesThePublishedProgram) {
   usb_test::VirtualArm arm;
   arm.name = GetParam().board;
   const auto protocol = arm.protocol();
@@ -28,7 +28,7 @@ TEST_P(BoardVectors, PutTheTipWhereThePublishedProgramSeesIt) {
 
 INSTANTIATE_TEST_SUITE_P(Boards, BoardVectors, testing::ValuesIn(usb_test::kBoardVectors));
 
-// The simulated board has the signs of the published one too: at +y it counts less on encoder a.
+// The simulated board has the signs of the published one: towards +y, encoder a counts down.
 TEST(SimulatedBoards, MbedEncoderACountsAgainstYaw) {
   namespace usb = device_sim::usb;
   usb::ShelfOptions options;

@@ -20,7 +20,8 @@
 #include "thimble/session/recording.h"
 #include "thimble/session/session.h"
 
-// The scenes with bodies that move, keep what they gave way, and snap, from the wire up.
+// The scenes with bodies that move, keep dents and snap, through the complete chain from the wire
+// up.
 
 namespace thimble {
 namespace {
@@ -43,7 +44,7 @@ TEST(ClayScene, KeepsItsPrints) {
   EXPECT_GT(farthest(*session), 3e-3);
   EXPECT_LE(farthest(*session), 8e-3 * (1 + 1e-9));
   EXPECT_GT(session->touch().object(0).shape()->clay()->dissipated(), 1e-3);
-  // What has been sculpted can be saved, and touched again.
+  // A sculpted shape can be saved and touched again.
   const auto file = support::scratch_folder() / "sculpted.off";
   ASSERT_TRUE(render::save_mesh(session->mesh_now(0), file));
   const auto again = render::load_mesh(file);
@@ -52,9 +53,9 @@ TEST(ClayScene, KeepsItsPrints) {
   EXPECT_TRUE(render::ContactMesh::build(*again));
 }
 
-// Triangles split under its prints: what is saved has them, and the run is repeatable to the bit,
-// from its recording too.
-TEST(ClayTablet, SplitsItsTrianglesSavesThemAndIsReplayedToTheBit) {
+// Triangles split under prints. The saved mesh contains the new triangles, and a repeated run and a
+// replay are bit-identical.
+TEST(ClayTablet, SplitTrianglesAreSavedAndReplayed) {
   session::SessionOptions options;
   options.record = support::scratch_folder() / "tablet.h5";
   const auto scene = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/clay_tablet.yaml";
@@ -82,8 +83,7 @@ TEST(ClayTablet, SplitsItsTrianglesSavesThemAndIsReplayedToTheBit) {
   EXPECT_EQ(replay->compared.differing, 0u);
 }
 
-// Reads a scene with `body` on an object that is `what`; gives the error's text, empty if there is
-// none.
+// Reads a scene with `body` on an object `what`. Returns the error text; empty if there is none.
 std::string refusal(const std::string& what, const std::string& body) {
   const std::filesystem::path scenes = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes";
   const auto file = support::scratch_folder() / "scene.yaml";
@@ -95,7 +95,7 @@ std::string refusal(const std::string& what, const std::string& body) {
   return session ? "" : session.error().message;
 }
 
-TEST(BodyKeys, TellWhatIsWrongWithABody) {
+TEST(BodyKeys, ErrorsNameTheWrongKey) {
   const std::string ball =
       "mesh: " + std::filesystem::relative(
                      std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/clay_ball.off",
@@ -137,7 +137,7 @@ TEST(BodyKeys, TellWhatIsWrongWithABody) {
       says(refusal(ball + ", contact: {tracker: compact}", "{plastic: {}}"), "edge_planes"));
 }
 
-TEST(TinCanScene, SnapsTwiceAndRollsMeanwhile) {
+TEST(TinCanScene, SnapsTwiceWhileRolling) {
   const auto session = support::open_shipped("tin_can");
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
@@ -151,8 +151,8 @@ TEST(TinCanScene, SnapsTwiceAndRollsMeanwhile) {
   EXPECT_GT(2 * std::acos(std::min(std::abs(q[0]), 1.0)), 0.05) << "rad";
 }
 
-// The weight that sinks by less than 3 mm is all the energy there is: 0.6 mJ.
-TEST(UndampedScene, GivesTheHandNoMoreThanTheWeightThatSinks) {
+// The only energy source is the weight that sinks by less than 3 mm: 0.6 mJ.
+TEST(UndampedScene, EnergyIsBoundedByTheSinkingWeight) {
   const auto session = session::Session::open(
       std::filesystem::path(THIMBLE_TEST_DATA) / "scenes/undamped_drop.yaml", {});
   ASSERT_TRUE(session) << session.error().message;

@@ -11,19 +11,19 @@
 #include "thimble/render/contact_choice.h"
 #include "thimble/render/scene_touch.h"
 
-// The demo's stroke with every way of contact that a scene can name, from the wire up.
+// The demo's stroke with every contact setting of a scene, through the complete chain.
 
 namespace thimble {
 namespace {
 
-/// Opens the demo's scene with a `contact:` section; the error is empty if it could be opened.
+/// Opens the demo's scene with a `contact:` section; the error is empty on success.
 std::unique_ptr<session::Session> open_with(const std::string& contact, std::string& error) {
   return support::open_elephant_text(support::elephant_text(contact), &error);
 }
 
 class EveryWayOfContact : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(EveryWayOfContact, TouchesTheElephantAndLosesItNever) {
+TEST_P(EveryWayOfContact, TouchesTheElephantWithoutLostContact) {
   THIMBLE_NEEDS_MESHES();
   std::string error;
   const auto session = open_with(GetParam(), error);
@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
                       "tracker: offset, search: tree", "tracker: compact, search: linear",
                       "tracker: compact, search: tree"));
 
-TEST(WayOfContact, ThatDoesNotGoTogetherIsRefusedWithTheReason) {
+TEST(WayOfContact, IncompatibleSettingsAreRefusedWithTheReason) {
   THIMBLE_NEEDS_MESHES();
   std::string error;
   EXPECT_FALSE(open_with("tracker: god_object, blending: phong", error));

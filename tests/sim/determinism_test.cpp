@@ -22,27 +22,28 @@ std::uint64_t hash_of_run(std::uint64_t seed) {
   return hash.value();
 }
 
-TEST(Determinism, TheSameSeedGivesTheSameBits) {
+TEST(Determinism, SameSeedIsBitIdentical) {
   THIMBLE_NEEDS_MESHES();
   EXPECT_EQ(hash_of_run(7), hash_of_run(7));
 }
 
-TEST(Determinism, AnotherSeedGivesAnotherRun) {
+TEST(Determinism, DifferentSeedGivesADifferentRun) {
   THIMBLE_NEEDS_MESHES();
   EXPECT_NE(hash_of_run(7), hash_of_run(8));
 }
 
-TEST(Determinism, TheRunIsTheOneThatWasStored) {
+TEST(Determinism, RunMatchesTheStoredHash) {
   THIMBLE_NEEDS_MESHES();
-  // One hash for every build type: release, sanitizers and debug give the same bits. A change of
-  // the scene, the arm's data or any force shows here; store the new hash only if it was meant. It
-  // holds for any x86-64, for 64-bit ARM (tests/arm64.sh) and any C library: nothing in a run calls
-  // a sine of that one (arch.one_mathematics).
+  // One hash for every build type: release, sanitizers and debug are bit-identical. A change of the
+  // scene, the arm's data or any force changes it; store a new hash only for an intended change. It
+  // is valid for any x86-64, for 64-bit ARM (tests/arm64.sh) and any C library, because a run calls
+  // no functions such as sine from that library (arch.one_mathematics).
   constexpr std::uint64_t kStored = 0xc7a1040f486754b;
   EXPECT_EQ(hash_of_run(1), kStored) << "new hash: 0x" << std::hex << hash_of_run(1);
 }
 
-/// Runs two seconds of a scene that needs no scanned mesh; 0 if it cannot, or touches nothing.
+/// Runs two seconds of a scene without a scanned mesh and returns its hash; 0 on an error or
+/// without contact.
 std::uint64_t hash_of_scene(const std::string& name) {
   session::SessionOptions options;
   options.duration = 2;
@@ -60,8 +61,8 @@ std::uint64_t hash_of_scene(const std::string& name) {
 }
 
 TEST(HardCaseDeterminism, ScenesMatchTheStoredHashes) {
-  // The release build (-O3) and the sanitizers' (-O1) both come here, and a build with -O0 gave the
-  // same, so one hash stands for any build. What was said of kStored above holds of these.
+  // One hash for any build: the release build (-O3), the sanitizers (-O1) and a build with -O0
+  // agree. The conditions of kStored above apply.
   struct Stored {
     const char* scene;
     std::uint64_t hash;
@@ -89,7 +90,7 @@ TEST(HardCaseDeterminism, ScenesMatchTheStoredHashes) {
                             "== runs of other bits than those stored", others, 0, "1");
 }
 
-TEST(Determinism, SteppedTickByTickARunIsTheSame) {
+TEST(Determinism, SteppedRunIsBitIdentical) {
   const auto whole = support::open_shipped("honey");
   const auto stepped = support::open_shipped("honey");
   ASSERT_TRUE(whole && stepped);
@@ -106,7 +107,7 @@ TEST(Determinism, SteppedTickByTickARunIsTheSame) {
   EXPECT_EQ(of_stepped.value(), of_whole.value());
 }
 
-TEST(Determinism, ALawFromOutsideRunsInVirtualTimeAlone) {
+TEST(Determinism, CustomLawNeedsVirtualTime) {
   auto law = [](const driver::DeviceState&) noexcept {
     return driver::ForceCommand{.f_T_W = {0, 0, 0.4}, .touch = {}};
   };
@@ -116,7 +117,7 @@ TEST(Determinism, ALawFromOutsideRunsInVirtualTimeAlone) {
   ASSERT_TRUE(session->set_law(driver::ForceLaw(law)));
   for (int tick = 0; tick < 300; ++tick) session->step(stop);
   EXPECT_EQ(session->ticks().back().f_wanted_W, (std::array<double, 3>{0, 0, 0.4}));
-  EXPECT_FALSE(session->set_law(driver::ForceLaw(law))) << "it has begun";
+  EXPECT_FALSE(session->set_law(driver::ForceLaw(law))) << "the run has started";
 
   session::SessionOptions in_real_time;
   in_real_time.clock = session::ClockKind::kWall;

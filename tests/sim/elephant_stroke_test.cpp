@@ -20,10 +20,11 @@
 #include "track/mesh_contact.h"
 #include "track/path_bounded.h"
 
-// The demo's whole stroke on the virtual clock, checked tick by tick against plain geometry that
-// shares no code with the library: inside or outside by winding number, the cells of the paper's
-// Fig. 4b from the mesh's vertices, force from depth and velocity. What the contact stage found is
-// asked of a bare one on the same path; what is felt is in the rows (path_bounded.h).
+// The demo's whole stroke on the virtual clock, checked tick by tick with simple geometry that
+// shares no code with the library. Inside or outside follows from the winding number, the cells of
+// the paper's Fig. 4b from the mesh's vertices, the force from depth and velocity. The result of
+// the contact stage comes from a separate stage on the same path; the filtered contact is in the
+// rows (path_bounded.h).
 
 namespace thimble {
 namespace {
@@ -70,12 +71,12 @@ class ElephantStroke : public ::testing::Test {
   static const render::TriangleMesh& mesh() { return session_->setup().objects().mesh_W(); }
 
   static session::Session* session_;
-  static std::vector<render::ContactState> found_;  // per row
+  static std::vector<render::ContactState> found_;  // one per row
 };
 session::Session* ElephantStroke::session_ = nullptr;
 std::vector<render::ContactState> ElephantStroke::found_;
 
-TEST_F(ElephantStroke, TouchesForMostOfItsTimeAndMoreThanOnce) {
+TEST_F(ElephantStroke, IsInContactMostOfTheTimeInSeveralTouches) {
   EXPECT_EQ(rows().size(), 10'000u);
   EXPECT_GT(session_->statistics().contact_time(), 5.0);
   EXPECT_GE(session_->statistics().contacts(), 2u);
@@ -93,20 +94,20 @@ TEST_F(ElephantStroke, LosesNoContactWhileTheTipIsInside) {
     ++checked;
     const bool inside = support::is_inside(mesh(), vector(rows()[i].p_WT));
     if (inside && !rows()[i].in_contact) ++lost;
-    // Contact may outlast the solid where it is thin, never elsewhere: the tip stays near it.
+    // Contact may continue outside of thin parts of the solid only, while the tip stays near.
     if (!inside && rows()[i].in_contact) ++felt_outside;
   }
   EXPECT_GT(checked, 1400u);
   EXPECT_EQ(lost, 0u);
   EXPECT_EQ(felt_outside, 0u);
-  // The report's own count says the same.
+  // The count in the report agrees.
   EXPECT_EQ(session::count_lost_contacts(rows(), session_->touch()), 0u);
 }
 
 TEST_F(ElephantStroke, KeepsTheTriangleWhoseCellHoldsTheTip) {
   // Cells by brute force: the face's plane above the tip, and for each edge the plane through it
-  // and the average of both faces' normals. Where no cell holds the tip (gaps at vertices) any
-  // neighbour is right; such ticks must be rare.
+  // and the average of both faces' normals. If no cell holds the tip (gaps at vertices), any
+  // neighbour is correct; such ticks must be rare.
   std::vector<Vector3d> normals;
   for (std::size_t t = 0; t < mesh().triangles.size(); ++t) {
     normals.push_back(support::outward_normal(mesh(), t));
@@ -136,7 +137,7 @@ TEST_F(ElephantStroke, KeepsTheTriangleWhoseCellHoldsTheTip) {
     const Vector3d p = vector(row.p_WT);
     const auto active = static_cast<std::size_t>(row.feature);
     const double below = -normals[active].dot(p - support::corner(mesh(), active, 0));
-    // In a hollow the nearest point of the edge or corner holds the tip, so far from it.
+    // In a groove the closest point of the edge or corner holds the tip, at this distance.
     const double distance = (nearest_on(row) - p).norm();
     EXPECT_TRUE(std::abs(found_[i].depth - below) <= 1e-12 ||
                 (std::abs(found_[i].depth - distance) <= 1e-12 && distance > below))
@@ -144,7 +145,7 @@ TEST_F(ElephantStroke, KeepsTheTriangleWhoseCellHoldsTheTip) {
     held += std::abs(found_[i].depth - below) > 1e-12;
     if (holds(active, p)) continue;
     ++outside_cell;
-    // Not in its own cell: then no cell near the tip may hold it.
+    // The tip is not in the cell of its triangle: then no cell near the tip may hold it.
     const auto nearest = support::nearest_on_mesh(mesh(), p);
     if (holds(nearest.triangle, p)) ++unexplained;
   }
@@ -154,11 +155,10 @@ TEST_F(ElephantStroke, KeepsTheTriangleWhoseCellHoldsTheTip) {
   EXPECT_EQ(unexplained, 0u);
 }
 
-TEST_F(ElephantStroke, ChangesDepthByNoMoreThanTheTipMoves) {
-  // As found: |d depth| <= |d p| within a triangle and over one edge, where the depth is continuous
-  // [BP 4b]. At a vertex the paper's cells overlap or leave gaps: the walk then crosses several
-  // edges in one tick and the depth jumps to that of the face it lands on, the nearest. Such ticks
-  // are few.
+TEST_F(ElephantStroke, DepthChangesAreBoundedByTheMotion) {
+  // Unfiltered contact: |d depth| <= |d p| within a triangle and over one edge, where the depth is
+  // continuous [BP 4b]. At a vertex the paper's cells overlap or leave gaps. The walk then crosses
+  // several edges in one tick, and the depth jumps to that of the closest face. Such ticks are few.
   std::size_t steps = 0, several = 0;
   double worst = 0;
   for (std::size_t i = 1; i < rows().size(); ++i) {
@@ -182,9 +182,9 @@ TEST_F(ElephantStroke, ChangesDepthByNoMoreThanTheTipMoves) {
   EXPECT_LT(worst, 0.25e-3);
 }
 
-TEST_F(ElephantStroke, FeelsWhatWasFoundButJustBehindTheEdges) {
-  // Flat faces turn at their edges, and the felt direction over some path behind them: until then
-  // depth and normal are others than those of the face.
+TEST_F(ElephantStroke, FilteredContactDiffersOnlyBehindEdges) {
+  // The normal changes at an edge, and the filtered direction follows over some path behind it.
+  // Until then depth and normal differ from those of the face.
   std::size_t touching = 0, behind = 0;
   double error = 0, depth = 0;
   for (std::size_t i = 0; i < rows().size(); ++i) {
@@ -198,7 +198,7 @@ TEST_F(ElephantStroke, FeelsWhatWasFoundButJustBehindTheEdges) {
     ++behind;
     error += (felt - wanted).norm();
     depth = std::max(depth, (felt - wanted).norm());
-    // Late, and never by more than there is to catch up.
+    // The filtered depth lags, by at most the remaining difference.
     EXPECT_LE(row.depth, 1.001 * found_[i].depth + (felt - wanted).norm());
   }
   std::printf("behind in %zu of %zu ticks, by %.4f mm in the mean of all and %.3f mm at most\n",
@@ -224,7 +224,7 @@ TEST_F(ElephantStroke, ForceIsSpringPlusDamperAlongTheNormal) {
         if ((n - face).norm() < 1e-9) {
           n = face;
           ++by_the_face;
-        } else {  // held in a hollow
+        } else {  // held in a groove
           n = (nearest_on(row) - p).normalized();
         }
       }
@@ -236,8 +236,8 @@ TEST_F(ElephantStroke, ForceIsSpringPlusDamperAlongTheNormal) {
   EXPECT_GT(by_the_face, 4000u);
 }
 
-// Gives the greatest change of the wanted force per tick beyond what stiffness times (1 + path
-// ratio) times the tip's path and the damping explain, N; negative where it never does.
+// Returns the largest change of the requested force per tick beyond stiffness times (1 + path
+// ratio) times the tip's path plus the damping, N. It is negative if no change exceeds that.
 double excess_over_the_path(std::span<const driver::TickRecord> rows,
                             const scene::SceneObject& object) {
   double worst = -1e9;
@@ -257,7 +257,7 @@ double excess_over_the_path(std::span<const driver::TickRecord> rows,
   return worst;
 }
 
-TEST_F(ElephantStroke, JumpsInForceByNoMoreThanThePathImplies) {
+TEST_F(ElephantStroke, ForceChangesAreBoundedByThePath) {
   EXPECT_LT(excess_over_the_path(rows(), session_->scene().objects.front()), 1e-10);
 }
 
@@ -265,7 +265,7 @@ class ElephantPressedDeep : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ElephantPressedDeep, ForceIsBoundedByThePathAt60Millimetres) {
   THIMBLE_NEEDS_MESHES();
-  // The demo's stroke, pressed so that the tip goes in by 6 to 9 mm, among other faces.
+  // The demo's stroke with more force: the tip goes 6 to 9 mm deep, and reaches other faces.
   const std::string text = std::regex_replace(support::elephant_text(GetParam()),
                                               std::regex("press: 0[.]00[0-9]"), "press: 0.06");
   const auto session = support::open_elephant_text(text);
@@ -277,7 +277,7 @@ TEST_P(ElephantPressedDeep, ForceIsBoundedByThePathAt60Millimetres) {
   const auto& object = session->scene().objects.front();
   EXPECT_LT(excess_over_the_path(session->ticks(), object), 1e-10);
 
-  // What a bare contact finds on the same path jumps.
+  // An unfiltered contact on the same path jumps.
   auto contact = render::MeshContact::build(session->setup().objects().mesh_W()).value();
   Vector3d before(0, 0, 0);
   bool touched = false;

@@ -1,6 +1,6 @@
-// Every fault of cable, wiring and host, on every arm, in every phase of a touch: what is promised
-// (fault_promises.h) is held at the motors of the simulated arm, not in what the driver believes.
-// tests/acceptance/FAULTS.md is the table of what was measured here.
+// Every fault of cable, wiring and host, on every arm, in every phase of a touch. The promise
+// (fault_promises.h) is tested at the motors of the simulated arm, not in the driver's state.
+// tests/acceptance/FAULTS.md is the table of these measurements.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,21 +15,21 @@
 namespace thimble::fault_test {
 namespace {
 
-constexpr int kBefore = 260;  // ticks: the hand is where it shall be, and the soft start is over
-constexpr int kAfter = 180;   // ticks in which is watched what becomes of it, or what is promised
+constexpr int kBefore = 260;  // ticks: the hand has reached its place, and the soft start is over
+constexpr int kAfter = 180;   // ticks after the fault in which the motors are observed
 
-/// Returns how long the board of an arm waits without a message, ms: mbed boards 500 [S
-/// woody-experimental main.cpp, haptikfabrikenapi firmware/main.cpp], boards with text lines 100.
+/// Returns the watchdog time of an arm's board, ms: mbed boards 500 [S woody-experimental main.cpp,
+/// haptikfabrikenapi firmware/main.cpp], boards with text lines 100.
 int watchdog_of(const TestedArm& arm) {
   return arm.name == "woodenhaptics" || arm.name == "polhem" ? 500 : 100;
 }
 
-/// What was seen of one cell.
+/// Observations of one cell of the table.
 struct Seen {
-  std::int64_t off_after = 0;  ///< ms until the motors had no current, for good; -1: never
+  std::int64_t off_after = 0;  ///< ms until the motors permanently had no current; -1: never
   driver::Fault cause = driver::Fault::kNone;
-  bool named_late = false;  ///< the driver sent a force after it had named a cause
-  bool told = true;         ///< of an end: the driver knows whether the arm took the zero
+  bool named_late = false;  ///< the driver sent a force after it had reported a cause
+  bool told = true;         ///< at the end: the driver knows whether the arm accepted zero force
 };
 
 device_sim::WiringSettings wiring_of(const TestedFault& fault) {
@@ -70,7 +70,7 @@ void note(const TestedFault& fault, const TestedArm& arm, Phase phase, const Pro
                         promised.ticks > 0 ? std::to_string(promised.ticks) : "");
 }
 
-/// Lets the fault come and watches.
+/// Triggers the fault and observes the motors.
 Seen watch(FaultRig& rig, const TestedFault& fault, int promised_ticks = 0) {
   Seen seen;
   const std::int64_t begin_ns = rig.watch().time_ns();
@@ -96,7 +96,7 @@ Seen watch(FaultRig& rig, const TestedFault& fault, int promised_ticks = 0) {
       rig.pass_frame();
     } else {
       rig.tick(i == 0 && fault.name == "force law without a number");
-      // What stands because the arm takes no message may stay; nothing new may come.
+      // A force may persist if the arm accepts no message; no new force may be sent.
       const Eigen::Vector3d sent_W = rig.device().f_sent_W();
       seen.named_late |= named && sent_W.norm() != 0 && sent_W != stands_W;
     }
@@ -124,7 +124,7 @@ void check_opening(const TestedFault& fault, const TestedArm& arm) {
   }
   std::string what = "refused";
   if (!opened) {
-    EXPECT_GT(opened.error().message.size(), 20U) << "a refusal tells what to do";
+    EXPECT_GT(opened.error().message.size(), 20U) << "the error must give a remedy";
   } else {
     const Seen seen = watch(
         rig,
@@ -132,19 +132,19 @@ void check_opening(const TestedFault& fault, const TestedArm& arm) {
     EXPECT_FALSE(seen.named_late);
     what = "opened, " + measured(seen);
     if (fault.name == "stall out") {
-      EXPECT_NE(seen.cause, driver::Fault::kNone) << "it was there from the start";
+      EXPECT_NE(seen.cause, driver::Fault::kNone) << "the fault existed from the start";
     }
   }
   EXPECT_TRUE(rig.within_limit());
   note(fault, arm, Phase::kOpening, {}, what);
-  // What is mended can be opened.
+  // After a repair the arm can be opened.
   if (fault.place != Place::kCable) return;
   rig.cable().heal();
   for (int i = 0; i < 5; ++i) rig.pass_frame();
   const auto again = rig.open();
   ASSERT_TRUE(again) << again.error().message;
   for (int i = 0; i < 30; ++i) rig.tick();
-  EXPECT_EQ(rig.device().fault(), driver::Fault::kNone) << "after it was mended";
+  EXPECT_EQ(rig.device().fault(), driver::Fault::kNone) << "after the repair";
 }
 
 void check_touch(const TestedFault& fault, const TestedArm& arm, Phase phase) {
@@ -156,20 +156,20 @@ void check_touch(const TestedFault& fault, const TestedArm& arm, Phase phase) {
   for (int i = 0; i < kBefore; ++i) rig.tick();
   if (fault.place != Place::kWiring) {
     ASSERT_EQ(rig.device().fault(), driver::Fault::kNone);
-    ASSERT_EQ(rig.depth() > 0, phase != Phase::kFree) << "the phase is not what it should be";
+    ASSERT_EQ(rig.depth() > 0, phase != Phase::kFree) << "wrong phase";
     ASSERT_EQ(rig.motors() > 0, phase != Phase::kFree);
   }
   const Promised promise = promised(fault.name, arm.kind, phase, watchdog_of(arm));
   const Seen seen = watch(rig, fault, promise.ticks);
 
   EXPECT_TRUE(rig.within_limit());
-  EXPECT_FALSE(seen.named_late) << "a force went out after its cause was named";
-  EXPECT_TRUE(seen.told) << "the arm took no zero, and nobody was told";
+  EXPECT_FALSE(seen.named_late) << "a force was sent after the cause was reported";
+  EXPECT_TRUE(seen.told) << "the arm did not accept zero force, and this was not reported";
   if (promise.promise == Promise::kOff || promise.promise == Promise::kArmOff) {
     EXPECT_GE(seen.off_after, 0) << "the motors still pull";
     EXPECT_LE(seen.off_after, promise.ticks);
   }
-  // In free motion zero stands already, so that nothing is amiss with an end that is not taken.
+  // In free motion the force is already zero, so a zero message that is not accepted does no harm.
   const bool stands =
       (promise.promise == Promise::kArmOff || promise.promise == Promise::kNotKnown) &&
       fault.name.ends_with("at the end") && phase == Phase::kFree;
@@ -182,14 +182,14 @@ void check_touch(const TestedFault& fault, const TestedArm& arm, Phase phase) {
     EXPECT_EQ(!rig.device().activate(), counts_from_elsewhere);
   }
   if (recording) {
-    EXPECT_EQ(rig.recorded(), rig.ticks()) << "ticks are missing";
+    EXPECT_EQ(rig.recorded(), rig.ticks()) << "ticks are missing from the recording";
   }
   note(fault, arm, phase, promise, measured(seen));
 }
 
 class FaultMatrix : public testing::TestWithParam<TestedArm> {};
 
-TEST_P(FaultMatrix, KeepsWhatIsPromisedInEveryPhase) {
+TEST_P(FaultMatrix, PromisesHoldInEveryPhase) {
   support::Covered("arms").add(GetParam().file);
   for (const TestedFault& fault : kTestedFaults) {
     for (std::size_t phase = 0; phase < kPhaseNames.size(); ++phase) {

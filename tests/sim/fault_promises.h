@@ -11,24 +11,24 @@
 
 namespace thimble::fault_test {
 
-/// What is promised of a fault.
+/// Promise for a fault.
 enum class Promise {
-  kOff,     ///< The driver sees it: the force goes off, stays off, and the cause is named.
+  kOff,     ///< The driver detects it: the force goes off and stays off, and the cause is reported.
   kArmOff,  ///< The arm's own watchdog switches the motors off; the driver may not know.
-  kBound,   ///< It looks like a touch: every force stays within the arm's limit, and if it goes off
-            ///< it stays off, with its cause.
-  kNotKnown,  ///< Only the arm could switch its motors off, and nobody knows whether it does. The
-              ///< driver names the cause if it can see one; of the motors nothing is promised.
+  kBound,   ///< It looks like a touch: every force stays within the arm's limit. If the force goes
+            ///< off, it stays off and the cause is reported.
+  kNotKnown,  ///< Only the arm could switch its motors off, which is unknown. The driver reports
+              ///< the cause if it detects one; nothing is promised for the motors.
 };
 
-/// Where a fault comes from.
+/// Origin of a fault.
 enum class Place { kCable, kWiring, kHost, kBoard };
 
 /// One kind of fault.
 struct TestedFault {
   std::string_view name;
   Place place = Place::kCable;
-  std::string_view order;  ///< for the cable: device_sim/usb/usb_fault.h says how it reads
+  std::string_view order;  ///< fault of the cable in the syntax of device_sim/usb/usb_fault.h
 };
 inline constexpr std::array<TestedFault, 35> kTestedFaults{{
     {"stall in", Place::kCable, "stall in"},
@@ -68,27 +68,26 @@ inline constexpr std::array<TestedFault, 35> kTestedFaults{{
     {"computer sleeps for 2 s", Place::kHost, {}},
 }};
 
-/// What is promised, and in how many ms, which are ticks, the motors have no current.
+/// The promise, and the time until the motors have no current, ms (= ticks).
 struct Promised {
   Promise promise = Promise::kBound;
   int ticks = 0;
-  driver::Fault cause = driver::Fault::kNone;  ///< kNone: any, or none
+  driver::Fault cause = driver::Fault::kNone;  ///< kNone: any cause, or none
 };
 
-/// Finds what is promised of a fault that comes while an arm is touched. `watchdog_ms`: that of its
-/// board.
+/// Returns the promise for a fault during a touch. `watchdog_ms`: watchdog time of the arm's board.
 inline Promised promised(std::string_view fault, driver::ArmKind arm, Phase phase,
                          int watchdog_ms) {
   using driver::Fault;
-  // 20 ms of silence, the tick that notices it, two frames until the zero has come.
+  // 20 ms of silence, the tick that detects it, and two frames until the zero force has arrived.
   constexpr int kNoticed = 24;
-  // The arm's watchdog after the last good message, whose way may take three frames.
+  // The arm's watchdog after the last valid message, which may take three frames.
   const int watchdog = watchdog_ms + 4;
   const bool hid = arm == driver::ArmKind::kPolhem || arm == driver::ArmKind::kWoody;
-  // An arm that answers only says nothing to a message that it did not hear.
+  // An arm that sends only when asked does not answer a message that it did not receive.
   const bool answers = arm != driver::ArmKind::kWoody;
   if (arm == driver::ArmKind::kFalcon) {
-    // Whether a Falcon has a watchdog is not known: the rig's has none.
+    // It is unknown whether a Falcon has a watchdog; the rig's Falcon has none.
     if (fault == "stall out" || fault == "short out" || fault == "silence out" ||
         fault == "lost out") {
       return {Promise::kNotKnown, 0, Fault::kNoReports};
@@ -97,13 +96,13 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm, Phase phas
     if (fault == "unplug") return {Promise::kNotKnown, 0, Fault::kTransportLost};
     if (fault == "host dies") return {Promise::kNotKnown, 0, Fault::kNone};
     if (fault == "computer sleeps for 2 s") return {Promise::kOff, 2000 + 3, Fault::kSuspended};
-    // The loop's own zero, two frames after it goes on.
+    // Zero force from the loop, two frames after it continues.
     if (fault == "host stands still for 150 ms") {
       return {Promise::kOff, 150 + 3, Fault::kLoopStalled};
     }
   }
-  // Its motors are off at once. It counts from elsewhere then, so that the home pose is needed; a
-  // Falcon has no firmware any more.
+  // Its motors are off at once. Its counters then start elsewhere, so the home pose is needed; a
+  // Falcon has lost its firmware.
   if (fault == "board restarts within 60 ms") {
     return {Promise::kOff, kNoticed, Fault::kNoReports};
   }
@@ -114,48 +113,48 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm, Phase phas
   if (fault == "stall in" || fault == "short in" || fault == "silence in" || fault == "lost in") {
     return unheard;
   }
-  if (fault == "long in" && hid) return unheard;  // babble; a stream skips what is no message
-  // Its reports are numbered, so that an old one is known.
+  if (fault == "long in" && hid)
+    return unheard;  // babble; a stream skips bytes that are no message
+  // Its reports have numbers, so an old report is detected.
   if (fault == "stale in" && arm == driver::ArmKind::kWoody) return unheard;
-  // Its silence is noticed a tick before the messages count as refused.
+  // Its silence is detected a tick before the messages count as refused.
   const Promised unanswered{Promise::kOff, watchdog, Fault::kNoReports};
   if (answers && (fault == "stall out" || fault == "lost out")) return unanswered;
-  // To what they do not understand, text boards and the Falcon say nothing either; a HID board
-  // answers a message of any length.
+  // Text boards and the Falcon do not answer invalid messages either; a HID board answers a message
+  // of any length.
   if (!hid && (fault == "short out" || fault == "silence out")) return unanswered;
   if (fault == "lost out") return unknown;
   if (fault == "stall out") return {Promise::kOff, watchdog, Fault::kRefused};
   if (fault == "short out") return unknown;
   if (fault == "long out" && hid) return unknown;
   if (fault == "silence out") {
-    // A HID write waits for the arm, and the loop with it. The arm's watchdog switches the motors
-    // off meanwhile; when it takes messages again, after 140 ms, the one that waited moves them
-    // until the zero of the loop that stood still has come.
+    // A HID write blocks the loop until the arm accepts it. Meanwhile the arm's watchdog switches
+    // the motors off. After 140 ms the arm accepts messages again; the blocked message moves the
+    // motors until the loop's zero force arrives.
     return {Promise::kOff, 140 + 3, Fault::kLoopStalled};
   }
-  // Surfaces as soft as the hand's grip, and one motor of three, are no matter of promises: there a
-  // reversed arm stays where the hand holds it. A stiff one is found while the hand goes in, before
-  // the phase begins.
+  // Nothing is promised for surfaces as soft as the hand's grip, or for one reversed motor of
+  // three: the hand then holds the arm in place. On a stiff surface the fault is detected while the
+  // hand goes in, before the phase begins.
   if (fault == "all motors turned round" && phase != Phase::kFree && phase != Phase::kDeforming) {
     return {Promise::kOff, 1, Fault::kMotorsReversed};
   }
   if (fault == "unplug") return {Promise::kOff, watchdog, Fault::kTransportLost};
   if (fault == "force law without a number") return {Promise::kOff, 3, Fault::kForceNotFinite};
   if (fault == "host stands still for 150 ms") {
-    // By a board that waits for longer the loop's own zero is the first.
+    // If the board's watchdog is longer, the zero force of the loop arrives first.
     return {Promise::kOff, std::min(watchdog, 150 + 3), Fault::kLoopStalled};
   }
   if (fault == "host dies") return unknown;
   if (fault == "computer sleeps for 2 s") return {Promise::kOff, watchdog, Fault::kSuspended};
   if (fault == "clock steps back 10 ms") return {Promise::kOff, 3, Fault::kTimeNotMonotonic};
-  // The zero is sent again each millisecond, and taken in the first in which it can be.
+  // Zero force is sent again every millisecond, and accepted as soon as possible.
   if (fault == "stall out of 30 ms at the end") return {Promise::kOff, 30 + 3, Fault::kNone};
   if (fault == "stall out at the end") return {Promise::kArmOff, watchdog, Fault::kRefused};
   return {};
 }
 
-/// Returns whether an arm with this fault cannot be opened at all; nothing if that is a matter of
-/// luck.
+/// Returns whether opening an arm with this fault fails; empty if that depends on chance.
 inline std::optional<bool> refused_at_opening(std::string_view fault, driver::ArmKind arm) {
   const bool hid = arm == driver::ArmKind::kPolhem || arm == driver::ArmKind::kWoody;
   if (fault == "stall in" || fault == "short in" || fault == "silence in") return true;

@@ -33,11 +33,11 @@ namespace {
 namespace usb = device_sim::usb;
 using Eigen::Vector3d;
 
-// Soft enough that every arm carries it, so that all feel the same.
+// Soft enough for every arm, so that all get the same surface.
 constexpr std::string_view kPlane =
     "  - {name: plate, plane: {normal: [0, 0, 1]}, stiffness: 300, damping: 1,\n"
     "     effects: [{friction: bristle, coefficient: 0.5}]}\n";
-// As stiff as the softest of the arms is declared to carry.
+// The lowest of the declared max. stiffnesses of the arms.
 constexpr std::string_view kStiffPlane =
     "  - {name: plate, plane: {normal: [0, 0, 1]}, stiffness: 800, damping: 1,\n"
     "     effects: [{friction: bristle, coefficient: 0.5}]}\n";
@@ -69,8 +69,8 @@ scene::Scene read(const TestedArm& tested, Phase phase, bool stiff) {
   return std::move(scene).value();
 }
 
-/// Plans the hand's way in the world: down in 0.15 s, unless it stays free, and from 0.2 s on to
-/// and fro at 0.2 m/s, unless it shall rest.
+/// Plans the hand's path in the world: down in 0.15 s, unless it stays free, and back and forth at
+/// 0.2 m/s from 0.2 s on, unless it rests.
 std::vector<device_sim::HandPath::Point> hand_way(Phase phase, const scene::ArmFile& file) {
   constexpr double kStep = 0.005, kEnd = 2;  // s
   std::vector<device_sim::HandPath::Point> points;
@@ -91,7 +91,7 @@ std::vector<device_sim::HandPath::Point> hand_way(Phase phase, const scene::ArmF
 
 FaultRig::FaultRig(const TestedArm& tested, Phase phase, const device_sim::WiringSettings& wiring)
     : tested_(tested), phase_(phase) {
-  // Reading a scene takes longer than a run of it.
+  // Scenes are cached because reading one takes longer than running it.
   static std::map<std::tuple<std::string_view, bool, bool>, scene::Scene> read_before;
   const bool stiff = wiring.motor_gain == Vector3d(-1, -1, -1);
   const std::tuple key(tested.file, phase == Phase::kDeforming, stiff);
@@ -99,7 +99,7 @@ FaultRig::FaultRig(const TestedArm& tested, Phase phase, const device_sim::Wirin
   scene::Scene& scene = read_before.at(key);
   file_ = scene.arms.front().arm;
   file_.simulated.firmware.wiring = wiring;
-  file_.limits.soft_start = 0.05;  // what is tested is what comes after
+  file_.limits.soft_start = 0.05;  // the tests concern the time after the soft start
   auto objects = scene::SceneObjects::build(scene);
   if (!objects) {
     ADD_FAILURE() << objects.error().message;
@@ -122,7 +122,7 @@ void FaultRig::build_arm() {
     ASSERT_TRUE(falcon) << falcon.error().message;
     falcon_ = std::move(falcon).value();
     falcon_->home_when_asked();
-    falcon_->set_watchdog(0);  // none is known, so nothing may be promised that hangs on one
+    falcon_->set_watchdog(0);  // none is known, so no promise may depend on one
     arm_ = &falcon_->on_bus();
     return;
   }
@@ -205,7 +205,7 @@ void FaultRig::tick(bool law_broken) {
   clock_.sleep_until_ns((clock_.now_ns() / kPeriod_ns + 1) * kPeriod_ns);
   const std::int64_t now_ns = clock_.now_ns() - stepped_back_ns_;
   const driver::DeviceState& state = device_->read(now_ns, now_ns);
-  // No link reads a lost wire, on which the time of the arm would pass.
+  // A lost link is not read any more, so the frames pass here.
   if (device_->lost()) let_frames_pass();
   driver::ForceCommand command = objects_->touch()(state);
   depth_ = command.touch.in_contact ? command.touch.depth : 0;

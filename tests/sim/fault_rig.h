@@ -23,13 +23,13 @@
 
 namespace thimble::fault_test {
 
-/// An arm as it comes, on its own wire.
+/// An arm with its default settings on its own wire.
 struct TestedArm {
   std::string_view name;
-  std::string_view file;  ///< in app/arms
-  driver::ArmKind kind;   ///< what it speaks
+  std::string_view file;  ///< arm file in app/arms
+  driver::ArmKind kind;   ///< protocol of the arm
 };
-/// Names it in lists of tests, where its bytes would stand.
+/// Prints the name in lists of tests, instead of the bytes.
 inline void PrintTo(const TestedArm& arm, std::ostream* out) {
   *out << arm.name;
 }
@@ -42,12 +42,12 @@ inline constexpr auto kTestedArms = std::to_array<TestedArm>({
     {"falcon", "falcon", driver::ArmKind::kFalcon},
 });
 
-/// What the arm is about when the fault comes.
+/// Activity of the arm at the time of the fault.
 enum class Phase { kOpening, kFree, kContact, kSliding, kDeforming, kRecording };
 inline constexpr std::array<std::string_view, 6> kPhaseNames{"opening", "free",      "contact",
                                                              "sliding", "deforming", "recording"};
 
-/// Watches the motors of an arm from frame to frame, whatever the host does meanwhile.
+/// Observes the motors of an arm from frame to frame, independently of the host.
 class MotorWatch final : public device_sim::usb::UsbDevice {
  public:
   explicit MotorWatch(device_sim::usb::UsbArm& arm) noexcept : arm_(arm) {}
@@ -73,7 +73,7 @@ class MotorWatch final : public device_sim::usb::UsbDevice {
     return arm_.out(address, packet);
   }
 
-  /// Returns the time of the last frame, and of the last in which a current flowed, ns.
+  /// Returns the time of the last frame, and of the last frame with a motor current, ns.
   std::int64_t time_ns() const noexcept { return time_ns_; }
   std::int64_t last_on_ns() const noexcept { return last_on_ns_; }
 
@@ -83,41 +83,41 @@ class MotorWatch final : public device_sim::usb::UsbDevice {
   std::int64_t last_on_ns_ = 0;
 };
 
-/// One arm with all between its hand and the force law: mechanics, board, a cable on which
-/// packets go wrong on demand, bus, driver, gate and a scene. Time is simulated.
+/// One arm with the complete chain from its hand to the force law: mechanics, board, a cable with
+/// packet faults on demand, bus, driver, gate and scene. Time is simulated.
 class FaultRig {
  public:
   static constexpr std::int64_t kPeriod_ns = 1'000'000;
 
-  /// Builds arm and scene; `wiring` says how the arm's encoders and motors are plugged in. With all
-  /// motors turned round the plate is stiff. Fails the test if that cannot be done.
+  /// Builds arm and scene; `wiring` is the wiring of the arm's encoders and motors. If all motors
+  /// are reversed, the plate is stiff. Fails the test on an error.
   FaultRig(const TestedArm& tested, Phase phase, const device_sim::WiringSettings& wiring = {});
   ~FaultRig();
 
   /// Opens the arm and lets forces through.
   driver::Result<void> open();
-  /// Begins to record what ticks do.
+  /// Starts a recording of the ticks.
   void record(const std::filesystem::path& path);
-  /// Ends the recording and tells how many ticks it holds.
+  /// Ends the recording and returns its number of ticks.
   std::uint64_t recorded();
 
-  /// Runs one tick, `law_broken` with a force law that answers with no number.
+  /// Runs one tick; with `law_broken` the force law returns NaN.
   void tick(bool law_broken = false);
-  /// Lets a frame pass in which the host does nothing.
+  /// Advances by one frame in which the host does nothing.
   void pass_frame();
-  /// Lets the host stand still.
+  /// Stalls the host.
   void stall(std::int64_t time_ns) { clock_.sleep_until_ns(clock_.now_ns() + time_ns); }
 
-  /// Lets the computer sleep; the loop notices when it wakes (driver/servo_loop.h).
+  /// Suspends the computer; the loop detects that when it wakes (driver/servo_loop.h).
   void sleep(std::int64_t time_ns) {
     stall(time_ns);
     device_->wake_from_sleep();
   }
 
-  /// Restarts the arm's board on a live wire; it says and hears nothing for so many frames.
+  /// Restarts the arm's board on a live wire; it neither sends nor receives for `frames` frames.
   void restart_board(int frames);
 
-  /// Lets the clock that the driver reads step back; mechanics and board go on.
+  /// Sets the driver's clock back; mechanics and board continue.
   void step_back(std::int64_t time_ns) { stepped_back_ns_ += time_ns; }
   /// Ends the touch as a servo loop does.
   void end();
@@ -126,8 +126,8 @@ class FaultRig {
   driver::Device& device() { return *device_; }
   bool is_open() const { return device_ != nullptr; }
   const scene::ArmFile& file() const { return file_; }
-  /// Returns the current in all motors together: what is true, whatever the driver believes; A
-  /// (Falcon: motor values).
+  /// Returns the norm of the true motor currents, whatever the driver's state; A (Falcon: motor
+  /// values).
   double motors() const { return arm_->truth().currents.norm(); }
   const MotorWatch& watch() const { return *watch_; }
   double depth() const { return depth_; }

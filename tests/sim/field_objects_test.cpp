@@ -17,7 +17,7 @@
 #include "thimble/render/scene_touch.h"
 #include "thimble/render/surface/spring_damper.h"
 
-// Walls and fields from the wire up: simulated arm, codec, kinematics, gate.
+// Walls and fields through the complete chain: simulated arm, codec, kinematics, gate.
 
 namespace thimble {
 namespace {
@@ -28,7 +28,7 @@ struct Nothing {
   void operator()(const driver::TickRecord&) const noexcept {}
 };
 
-/// An arm without a hand, nearly without friction, on an ideal wire; its gate lets all through.
+/// An arm without a hand, nearly without friction, on an ideal wire; its gate passes all forces.
 struct FreeArm {
   static constexpr double kMass = 0.1;
   static constexpr double kViscous = 0.005;
@@ -50,7 +50,7 @@ struct FreeArm {
             .value());
     driver::DeviceSettings wide = support::vintage_settings();
     wide.no_motors = true;
-    wide.limits.force_max = 1e5;  // the soft start of 50 ms is not felt
+    wide.limits.force_max = 1e5;  // so high that the soft start of 50 ms has no effect
     wide.limits.rise_max = 1e5;
     wide.limits.soft_start = 0.05;
     auto opened = driver::Device::open(
@@ -75,13 +75,14 @@ struct FreeArm {
   std::unique_ptr<driver::Device> device;
 };
 
-// Pushes the tip towards a wall, lets it fly, and tells how fast it comes back against how fast it
-// came.
+// Pushes the tip towards a wall and releases it. Returns the ratio of its speeds after and before
+// the impact.
 double restitution(double stiffness, double damping, std::int64_t period_ns, std::int64_t delay_ns,
                    double phase) {
   FreeArm arm(period_ns, delay_ns);
   const double tick = 1e-9 * static_cast<double>(period_ns);
-  // Some 20 mm/s after 20 ms of push; the wall stands farther off by a share of a tick's way.
+  // About 20 mm/s after 20 ms of push; the distance of the wall varies by a share of the way in a
+  // tick.
   const double off = 0.0012 + 0.02 * tick * phase;
   render::ContactForceLaw wall{render::PrimitiveContact(render::HalfSpace{.p_WO = {0, 0, -off}}),
                                render::SpringDamper{stiffness, damping}};
@@ -136,7 +137,7 @@ TEST(HalfSpaceFromTheWireUp, ReturnsTheEnergyOfTheLaw) {
   }
 }
 
-TEST(FunctionField, ThatReturnsNaNLatchesAFaultWithZeroForce) {
+TEST(FunctionField, NaNLatchesAFaultWithZeroForce) {
   FreeArm arm(1'000'000);
   bool broken = false;
   const auto law = [&broken](const driver::DeviceState&) noexcept -> Vector3d {
@@ -160,7 +161,7 @@ TEST(FunctionField, ThatReturnsNaNLatchesAFaultWithZeroForce) {
   broken = true;
   EXPECT_EQ(tick(), 0);
   EXPECT_EQ(arm.device->fault(), driver::Fault::kForceNotFinite);
-  // It stays off although the law is sound again, until somebody activates the arm.
+  // It stays off, although the law is valid again, until the arm is activated.
   broken = false;
   EXPECT_EQ(tick(), 0);
   EXPECT_EQ(arm.device->fault(), driver::Fault::kForceNotFinite);

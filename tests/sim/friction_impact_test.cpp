@@ -1,6 +1,5 @@
-// Impacts on a surface with friction: what comes back is never more than what came in. Cases 7 and
-// 10 of [PHYSICS 7], in two axes with the plant's exact map: x along the surface, z along its
-// normal.
+// Impacts on a surface with friction: the tip never leaves faster than it arrived. Cases 7 and 10
+// of [PHYSICS 7], in two axes with the plant's exact map: x along the surface, z along its normal.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +19,8 @@ using Eigen::Vector3d;
 
 constexpr double kEncoder = 3e-5;  // m
 
-/// Cuts forces as a motor-protection limit must not: the fall as well as the rise.
+/// A limit that a motor protection must not have: it limits the fall of a force as well as its
+/// rise.
 class SymmetricSlewLimit {
  public:
   Vector3d pass(const Vector3d& f_W) {
@@ -35,13 +35,13 @@ class SymmetricSlewLimit {
 };
 
 struct Impact {
-  double restitution = 0;  // speed when leaving by speed when entering
+  double restitution = 0;  // speed when leaving over speed when entering
   double most_force = 0;   // N
 };
 
-/// Throws arm and hand against the surface, 45 degrees aslant; the hand goes along as a mass and,
-/// if `held`, as a spring and damper about where it entered. The first sample falls `phase` of a
-/// period after the entry.
+/// Throws arm and hand against the surface at 45 degrees. The hand moves along as a mass and, if
+/// `held`, as a spring and damper to the point of entry. The first sample is `phase` of a period
+/// after the entry.
 Impact impact(std::string_view name, double speed, double phase, bool held, double stiffness,
               driver::SafetyGate* gate, bool symmetric) {
   const auto friction = support::make_friction(name, render::MapSettings({{"coefficient", 0.5}}));
@@ -123,7 +123,7 @@ TEST(HardCaseRiseLimit, SaturatingGateReturnsNoSpeed) {
       }
       EXPECT_LE(most, 8.5 + 1e-9);
       if (speed >= 1) {
-        EXPECT_NEAR(most, 8.5, 1e-9) << name << ": the limits were not reached";
+        EXPECT_NEAR(most, 8.5, 1e-9) << name << ": the test did not reach the limits";
       }
     }
   }
@@ -132,7 +132,7 @@ TEST(HardCaseRiseLimit, SaturatingGateReturnsNoSpeed) {
 }
 
 TEST(HardCaseRiseLimit, GuardSymmetricLimitThrowsAHand) {
-  // The guard of the test above: the same impacts with a limit on the fall as well.
+  // Guard of the test above: the same impacts with a limit on the fall as well.
   double most = 0;
   for (int i = 0; i < 100; ++i) {
     most = std::max(

@@ -1,6 +1,6 @@
-// Friction from the wire up: the paper's limit cycle, and that the default has none. Cases 13 to 16
-// and 20 of [PHYSICS 7] on the table of [PHYSICS 2.2]: friction of 0.5 N under 1 N, 0.03 mm
-// encoder.
+// Friction through the complete chain: the paper's friction has a limit cycle, the default has
+// none. Cases 13 to 16 and 20 of [PHYSICS 7] on the table of [PHYSICS 2.2]: friction of 0.5 N under
+// 1 N, encoder steps of 0.03 mm.
 
 #include <gtest/gtest.h>
 
@@ -39,13 +39,13 @@ std::unique_ptr<render::AnyStage> friction(std::string_view name, const Friction
 
 struct Rest {
   double force_hf = 0;    // N RMS above 50 Hz in the last second
-  double force_span = 0;  // N, largest less smallest in the last second
+  double force_span = 0;  // N, max. minus min. in the last second
   double x_hf = 0;        // m RMS
   double sign_changes = 0;
   double held = 0;
 };
 
-/// Slides at 50 mm/s, stops at `stop` (m), and looks at the last second of `duration`.
+/// Slides at 50 mm/s, stops at `stop` (m), and evaluates the last second of `duration`.
 Rest rest_after_stop(render::AnyStage& stage, const FrictionRigSettings& rig, double stop,
                      double duration = 3.3) {
   const RigRun run = rub(stage, {{0, stop - 0.02}, {0.4, stop - 0.02}, {0.8, stop}}, duration, rig);
@@ -62,7 +62,7 @@ Rest rest_after_stop(render::AnyStage& stage, const FrictionRigSettings& rig, do
           .held = std::abs(mean(raw.last(1000)))};
 }
 
-TEST(NaiveFriction, HasALimitCycleAfterAStopAsThePaperSays) {
+TEST(NaiveFriction, HasTheLimitCycleOfThePaperAfterAStop) {
   const FrictionRigSettings rig;
   const auto hold = friction("naive", rig, {{"at_rest", "hold"}});
   const Rest rest = rest_after_stop(*hold, rig, 0.01);
@@ -71,18 +71,18 @@ TEST(NaiveFriction, HasALimitCycleAfterAStopAsThePaperSays) {
   EXPECT_NEAR(rest.sign_changes / 2, 92, 0.2 * 92);
 }
 
-TEST(NaiveFriction, MovesTheHandNoMoreOnceTheEncodersAreIdeal) {
+TEST(NaiveFriction, HandIsStillWithIdealEncoders) {
   FrictionRigSettings rig;
   rig.encoder_step = 0;
   const auto hold = friction("naive", rig, {{"at_rest", "hold"}});
   const Rest rest = rest_after_stop(*hold, rig, 0.01);
-  // The force still turns at every second tick or so, which is the sampling's own chatter; what the
-  // hand feels of it stays below the working limit of [PHYSICS 6].
+  // The force still reverses about every second tick, which is chatter of the sampling. Its effect
+  // on the hand stays below the working limit of [PHYSICS 6].
   EXPECT_LT(rest.x_hf, 1.0e-6);
   EXPECT_GT(rest.sign_changes, 500);
 }
 
-// From the wire up.
+// Through the complete chain, from the wire up.
 TEST(HardCaseNaiveFriction, HasTheMeanAndRippleOfItsLaw) {
   double worst_mean = 0, worst_ripple = 0, ideal_ripple = 0;
   for (const double speed : {0.005, 0.02}) {
@@ -129,12 +129,13 @@ TEST(HardCaseFrictionStop, IsSilentAtAnyDelay) {
   record_hard_case(14, kStops, "<= force above 50 Hz, RMS", 1e3 * most_force, 1, "mN");
   record_hard_case(14, kStops, "<= way above 50 Hz, RMS", 1e6 * most_way, 0.05, "um");
   record_hard_case(14, kStops, "== changes of sign per second", most_changes, 0, "1/s");
-  record_hard_case(14, kStops, "> force that it goes on holding", least_held, 0.25, "N");
+  record_hard_case(14, kStops, "> force that it continues to hold", least_held, 0.25, "N");
 }
 
-// That the last second flickers no more than the first, as [PHYSICS 7] proposes, holds of no
-// limit cycle: windows of a second see it from other phases, and differ by 3 % for ever. What must
-// not grow is its span: two counts, as case 5 has it, and the RMS below half a quantum.
+// [PHYSICS 7] proposes that the last second flickers no more than the first. No limit cycle
+// satisfies that: windows of a second begin at different phases and always differ by 3 %. So the
+// test bounds its span, which must not grow: two counts as in case 5, and an RMS below half a
+// quantum.
 TEST(HardCaseFrictionStop, ArmWithoutDryFrictionIsQuiet) {
   double most_share = 0, most_changes = 0, most_span = 0;
   double late_span = 0, late_share = 0;
@@ -197,7 +198,7 @@ TEST(DefaultFriction, IsSilentForOtherHandsMassesAndEncoders) {
   }
 }
 
-// What the settings refuse is what falls into a limit cycle.
+// The settings that are refused cause a limit cycle.
 TEST(HardCaseStiffBristle, GuardOneCountBristleChatters) {
   const FrictionRigSettings rig;
   render::AnyStageOf<render::BristleFriction> bristle(render::BristleFriction(
@@ -226,7 +227,7 @@ TEST(HardCaseSlowSliding, KeepsItsForceQuietly) {
   }
 }
 
-// The arm's own dry friction is away, so that nothing else holds.
+// The arm has no dry friction, so nothing else holds it.
 TEST(HardCaseStiction, SteadyLoadDoesNotDrift) {
   FrictionRigSettings rig;
   const auto context = stability::effect_context_of(rig);
@@ -234,7 +235,8 @@ TEST(HardCaseStiction, SteadyLoadDoesNotDrift) {
   for (const double holding : {0.5, 0.6}) {
     const auto bristle = make_friction(
         "bristle", MapSettings({{"coefficient", 0.5}, {"static_coefficient", holding}}), context);
-    // The hand pulls with 0.9 of F_s: it stands that far ahead of the tip, which gives a little.
+    // The hand pulls with 0.9 F_s: its spring is extended by that force, and the tip yields
+    // slightly.
     const double load = 0.9 * holding;
     const double ahead = load / 300 + load / 2667;
     const RigRun run = rub(*bristle, {{0, 0}, {0.5, 0}, {1, ahead}}, 12, rig);
@@ -265,7 +267,7 @@ TEST(HardCaseStiction, OscillatingLoadDoesNotCreep) {
     }
     const double duration = 0.5 + 0.2 * cycles;
     const RigRun run = rub(*bristle, way, duration, rig);
-    // The mean place of the first whole second of the oscillation against the last's.
+    // Mean position in the first full second of the oscillation, compared with the last.
     const std::span<const double> x(run.x);
     const double drift = mean(x.last(1000)) - mean(x.subspan(1500, 1000));
     EXPECT_LE(std::abs(drift), 1e-6) << step;

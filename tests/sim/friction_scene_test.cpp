@@ -1,4 +1,4 @@
-// Frictions as scenes name them, on the elephant of the demo, and what is said where one is wrong.
+// Frictions with their scene keys, on the elephant of the demo, and the errors for wrong values.
 
 #include <gtest/gtest.h>
 
@@ -44,8 +44,8 @@ TEST(SceneWithFriction, EveryFrictionRunsWithoutAllocation) {
     EXPECT_EQ(support::heap_calls_of([&] { end = (*session)->run(stop); }), 0) << name;
     EXPECT_EQ(end, driver::ServoEnd::kDone) << name;
     EXPECT_GE((*session)->statistics().contacts(), 2U) << name;
-    // Along the surface there is force now, and never more than friction may hold (a stiction point
-    // by default 1.25 times as much). The gate's rise limit is not at work while stroking.
+    // The force along the surface is above zero, and at most the max. friction (of a stiction point
+    // by default 1.25 times as much). The gate's rise limit has no effect while stroking.
     double most = 0;
     int rubbed = 0;
     for (const driver::TickRecord& row : (*session)->ticks()) {
@@ -61,7 +61,7 @@ TEST(SceneWithFriction, EveryFrictionRunsWithoutAllocation) {
   }
 }
 
-TEST(SceneWithFriction, IsToldWhatTheArmCannotKeepQuiet) {
+TEST(SceneWithFriction, SettingsThatOscillateAreRefused) {
   THIMBLE_NEEDS_MESHES();
   session::SessionOptions options;
   options.mesh_folder = THIMBLE_MESHES;

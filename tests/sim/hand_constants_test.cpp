@@ -1,5 +1,5 @@
-// The hand's constants are guesses [PHYSICS 9]: what ships must hold for a third and three times
-// of each.
+// The hand's constants are guesses [PHYSICS 9], so the shipped walls must be stable for a third and
+// three times each constant.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@
 namespace thimble {
 namespace {
 
-/// Gives the distinct walls (N/m, N s/m) of all scenes that ship, each with its arm and rate.
+/// Returns the distinct walls (N/m, N s/m) of all shipped scenes, each with its arm and rate.
 std::vector<std::pair<scene::Scene, scene::SceneObject>> shipped_walls() {
   std::vector<std::pair<scene::Scene, scene::SceneObject>> walls;
   std::set<std::array<double, 3>> seen;
@@ -40,7 +40,7 @@ std::vector<std::pair<scene::Scene, scene::SceneObject>> shipped_walls() {
   return walls;
 }
 
-/// Gives all hands of a third, once and three times mass, stiffness and damping.
+/// Returns all hands with 1/3, 1 and 3 times the mass, stiffness and damping.
 std::vector<device_sim::HandSettings> hands_around(device_sim::HandSettings hand) {
   std::vector<device_sim::HandSettings> hands;
   hand.tremor_amplitude = 0;
@@ -106,12 +106,12 @@ TEST(HandConstants, NoHandIsThrownBackFasterByAnyShippedWall) {
                             "<= largest restitution", most, 1, "1");
 }
 
-/// What a wall does under all hands, pressed along each axis through the whole way; without the
-/// gate's energy stage, which would help.
+/// Oscillation of a wall with all hands, pressed along each axis through the complete chain,
+/// without the gate's energy stage, which would help.
 struct Unrest {
-  int loud = 0;  ///< Hands and axes under which the force moves by more than 20 mN RMS.
+  int loud = 0;  ///< Number of hands and axes with more than 20 mN RMS of force.
   int tried = 0;
-  double force_rms = 0;  ///< The most, N.
+  double force_rms = 0;  ///< Max. RMS force, N.
   std::string who;
 };
 
@@ -130,7 +130,7 @@ Unrest unrest_of(const scene::ArmFile& file, double rate, double stiffness, doub
       if (!touch) continue;
       EXPECT_FALSE(touch->fault);
       ++found.tried;
-      // What cannot be felt [PHYSICS 6].
+      // Perception threshold [PHYSICS 6].
       if (touch->force_rms > 0.02) ++found.loud;
       if (touch->force_rms < found.force_rms) continue;
       found.force_rms = touch->force_rms;
@@ -157,7 +157,7 @@ TEST(HandConstants, EveryHandRestsOnEveryShippedWall) {
                             "<= RMS of the force at rest", 1e3 * most, 20, "mN");
 }
 
-TEST(HandConstants, EveryHandRestsOnWhatTuneCallsSafe) {
+TEST(HandConstants, EveryHandRestsOnTunedWalls) {
   double most = 0;
   for (const char* const name : {"vintage_phantom", "woodenhaptics", "polhem"}) {
     const auto arm =
@@ -184,7 +184,7 @@ TEST(HandConstants, GuardLowImpedanceGripOscillates) {
   ASSERT_TRUE(arm);
   const stability::Carried carried =
       stability::carried_by(*arm, stability::loop_times(*arm, 1000), 800, 0);
-  // Seven tenths of the edge with the hand of the file: a third of its damping does not do.
+  // 0.7 of the edge with the hand of the file; a third of its damping is not enough.
   const Unrest unrest = unrest_of(*arm, 1000, 0.7 * carried.stiffness_exact, 0);
   EXPECT_EQ(unrest.loud, 27);  // all with 1 N s/m, and none with 3 or 9
   support::record_hard_case(7, "guard: 0.7 of the edge with the hand of the file, 27 hands",

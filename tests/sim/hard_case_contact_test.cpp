@@ -1,5 +1,5 @@
-// Hard cases 22, 23, 25, 27 and 28 of [PHYSICS 7] through the door that scenes use: one object
-// with every tracker that a scene can name, from the tip's place to the force.
+// Hard cases 22, 23, 25, 27 and 28 of [PHYSICS 7] through the interface of scenes: one object with
+// every tracker of a scene, from the tip position to the force.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ using support::record_hard_case;
 
 constexpr double kStiffness = 1000;  // N/m
 
-// `normal_projection` is what the paper had before, known to fail, and kept for comparison.
+// `normal_projection` is the paper's earlier method. It is known to fail, and kept for comparison.
 constexpr std::array kTrackers{TrackerChoice::kEdgePlanes, TrackerChoice::kOffset,
                                TrackerChoice::kPacked, TrackerChoice::kGodObject};
 
@@ -44,14 +44,15 @@ std::string name_of(TrackerChoice tracker) {
   return name;
 }
 
-/// An object that is touched at one place after the other.
+/// An object that is touched at a sequence of places.
 class Touched {
  public:
   Touched(const TriangleMesh& mesh, TrackerChoice tracker,
           std::optional<NormalWeights> normals = {}) {
     ContactChoice contact;
     contact.tracker = tracker;
-    if (tracker != TrackerChoice::kPacked) contact.normals = normals;  // it knows angles only
+    if (tracker != TrackerChoice::kPacked)
+      contact.normals = normals;  // it supports only the setting by angles
     auto built =
         build_object_touch(mesh, contact, {.spring = {.stiffness = kStiffness, .damping = 0}});
     if (!built) throw std::runtime_error(built.error().message);
@@ -63,7 +64,7 @@ class Touched {
     state.p_WT = p_WT;
     return command_ = object_->update(state);
   }
-  /// Ends whatever contact there is.
+  /// Ends any contact.
   void forget() { at(Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())); }
   bool inside(const Vector3d& p_WT) const { return object_->inside(p_WT); }
   const driver::ForceCommand& command() const { return command_; }
@@ -73,9 +74,9 @@ class Touched {
   driver::ForceCommand command_;
 };
 
-/// Slides a tip 1 mm below a smooth surface at 20 mm/s, so that its own way changes the force by no
-/// more than 2 % per tick and hides no jump; tells lost contacts, and the largest change of the
-/// force in a tick, over the force.
+/// Slides a tip 1 mm below a smooth surface at 20 mm/s, so that its motion changes the force by at
+/// most 2 % per tick and hides no jump. Returns the number of lost contacts, and the largest
+/// relative change of the force in a tick.
 template <class Surface>
 std::pair<int, double> slide(Touched& touched, const Surface& surface, Vector3d s, int crossings) {
   constexpr double kDepth = 1e-3;
@@ -200,17 +201,17 @@ TEST(HardCaseSharpCorner, TrackersSettleInOneTick) {
     EXPECT_EQ(lost, 0) << name_of(tracker);
     EXPECT_EQ(changed, 0) << name_of(tracker);
     EXPECT_LT(most_hops, kHopsMax)
-        << name_of(tracker);  // that many end a walk that has not settled
+        << name_of(tracker);  // the limit of steps of a walk that does not settle
     const std::string words = name_of(tracker) + ", wedge, corner and needle, leaps at random";
     record_hard_case(25, words, "== ticks in which a still tip changes its force", changed, 0, "1");
     record_hard_case(25, words, "< most hops in a tick", most_hops, kHopsMax, "1");
   }
 }
 
-// HardCaseFastStroke in offset_tracker_test.cpp holds the offset tracker to brute force; the
-// compact one has the same cells if its normals are the same, but for their packing, which moves
-// borders by some 1e-5 of an edge. So the proxies are compared: that of a neighbour, half an edge
-// beyond the border, would be (L/2)^2 / 2R = 1.4 um off.
+// HardCaseFastStroke in offset_tracker_test.cpp compares the offset tracker with brute force. The
+// compact tracker has the same cells with the same normals, except for their packing, which moves
+// borders by about 1e-5 of an edge. So the proxies are compared: that of a neighbour, half an edge
+// beyond the border, would be wrong by (L/2)^2 / 2R = 1.4 um.
 TEST(HardCaseFastStroke, CompactTrackerMatchesOffset) {
   const TriangleMesh ball = support::icosphere(5, 0.008);  // edges of 0.3 mm
   Touched compact(ball, TrackerChoice::kPacked, NormalWeights::kAngle);
@@ -238,7 +239,7 @@ TEST(HardCaseFastStroke, CompactTrackerMatchesOffset) {
   record_hard_case(26, kStroke, "< most hops in a tick", most_hops, kHopsMax, "1");
 }
 
-/// Moves a place to multiples of 2^-36 m, so that a shift of 1e4 m rounds nothing.
+/// Rounds a position to multiples of 2^-36 m, so that a shift of 1e4 m is exact.
 Vector3d on_lattice(const Vector3d& p) {
   return (p * 0x1p36).array().round().matrix() * 0x1p-36;
 }
@@ -256,7 +257,7 @@ double bump_radius(const Vector3d& u) {
                                 std::sin(kWaves * u.z() + 2));
 }
 
-/// Splits triangles by points a hair off an edge: slivers of 1e-14 m^2 and less.
+/// Splits triangles at points very close to an edge: slivers of 1e-14 m^2 and less.
 TriangleMesh with_slivers(TriangleMesh mesh) {
   const std::size_t count = mesh.triangles.size();
   for (std::size_t t = 0; t < count; t += 3) {
@@ -273,10 +274,10 @@ TriangleMesh with_slivers(TriangleMesh mesh) {
 
 struct Difference {
   int touching = 0, other_contact = 0;
-  double worst = 0;  // over the size of 0.1 m
+  double worst = 0;  // relative to the size of 0.1 m
 };
 
-/// Strokes a mesh and its scaled and moved copy alike, at 1 m/s and down to 8.5 N at 1 N/mm, and
+/// Strokes a mesh and its scaled and moved copy equally, at 1 m/s and up to 8.5 N at 1 N/mm, and
 /// compares depths and proxies.
 Difference difference(const TriangleMesh& base, TrackerChoice tracker, double scale,
                       double offset) {
@@ -308,9 +309,9 @@ Difference difference(const TriangleMesh& base, TrackerChoice tracker, double sc
   return found;
 }
 
-// A scale of 1e-6 rounds each vertex; a sliver 1e-12 m high is turned by that by 1e-5 rad, so it is
-// another shape. A scale that is a power of two rounds nothing: there even slivers must give the
-// very bits, which nothing with a length of its own in it would.
+// A scale of 1e-6 rounds each vertex. This turns a sliver 1e-12 m high by 1e-5 rad, so it has a
+// different shape. A scale that is a power of two is exact: even slivers must then give
+// bit-identical results, which excludes any built-in length.
 TEST(HardCaseScale, EveryTrackerIsInvariant) {
   const TriangleMesh plain = bumps(3), slivers = with_slivers(bumps(2));
   struct Variant {

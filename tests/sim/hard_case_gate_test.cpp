@@ -1,5 +1,5 @@
-// Hard cases 9 to 12 of [PHYSICS 7]: what stands between a wall and the motors. Each has its
-// guard test: what must fail is seen to fail.
+// Hard cases 9 to 12 of [PHYSICS 7]: the limits between a wall and the motors. Each has a guard
+// test that shows the failure without the limit.
 
 #include <gtest/gtest.h>
 
@@ -35,10 +35,10 @@ GateLimits limits(double force_max = 8.5) {
           .watchdog_ns = 100'000'000};
 }
 
-/// How a guard keeps its account.
+/// Force that an energy guard books.
 enum class Booking { kSent, kDemanded };
 
-/// Joins a gate to a one-dimensional wall as Device joins it to an arm.
+/// Connects a gate to a one-dimensional wall as Device connects it to an arm.
 class GatedWall {
  public:
   GatedWall(const Wall& wall, const GateLimits& gate_limits, const EnergyGuardSettings& energy)
@@ -64,8 +64,8 @@ class GatedWall {
   double sent_ = 0, requested_ = 0;
 };
 
-/// Lets a hand pull the tip against a wall with 1 N from 5 mm away; tells how far it bounces back
-/// each time, m.
+/// A hand pulls the tip against a wall with 1 N from a distance of 5 mm. Returns the height of each
+/// bounce, m.
 template <class Tick>
 std::vector<double> apexes(WallRig& rig, double duration, Tick tick) {
   std::vector<double> found;
@@ -83,7 +83,7 @@ std::vector<double> apexes(WallRig& rig, double duration, Tick tick) {
       found.back() = std::max(found.back(), x);
     }
   }
-  if (!inside && !found.empty()) found.pop_back();  // the last is not over
+  if (!inside && !found.empty()) found.pop_back();  // the last bounce is not complete
   return found;
 }
 
@@ -125,8 +125,8 @@ TEST(HardCaseController, GuardBouncesGrowWithoutIt) {
   EXPECT_GT(bounces.back(), 10 * bounces.front());
 }
 
-/// Lets the observer guard a wall whose force cannot pull, and keep its account of what is sent or
-/// of what was asked for; tells the bounces.
+/// Returns the bounces on a wall whose force cannot pull, guarded by the energy observer, which
+/// books the sent or the requested force.
 std::vector<double> bounces_with(Booking booking) {
   driver::PassivityObserver observer(kPassivity);
   WallRig rig(pulled_wall(3000));
@@ -142,17 +142,18 @@ std::vector<double> bounces_with(Booking booking) {
   });
 }
 
-TEST(HardCaseController, GuardBookingTheAskedForceCreeps) {
-  // A wall that must not stick clamps the damping on the way out: an account of what was asked for
-  // believes that it was paid.
+TEST(HardCaseController, GuardBookingTheRequestedForceCreeps) {
+  // A wall that must not stick clamps the damping on the way out; an account of the requested force
+  // counts it as dissipated.
   const auto good = bounces_with(Booking::kSent), bad = bounces_with(Booking::kDemanded);
   ASSERT_GE(good.size(), 3u);
   ASSERT_GE(bad.size(), 3u);
   const double crept = *std::max_element(bad.begin() + 1, bad.end()) / bad.front();
-  // Less than perfect without pulling: what it cannot take on the way out it takes on the next in.
+  // The wall may not pull: energy that cannot be removed on the way out is removed on the next way
+  // in.
   EXPECT_LE(*std::max_element(good.begin() + 1, good.end()), 1.1 * good.front());
   EXPECT_GT(crept, 1.2);
-  record_hard_case(11, "guard: asked force booked in place of the sent one",
+  record_hard_case(11, "guard: requested force booked instead of the sent one",
                    "> largest bounce over the first", crept, 1.2, "1");
 }
 
@@ -197,7 +198,7 @@ TEST(HardCaseBoundedWall, GuardSteepBoundIsActive) {
                    "1");
 }
 
-/// Throws the tip at a wall through a limiter; tells the restitution.
+/// Throws the tip at a wall through a limiter. Returns the restitution.
 template <class Limiter>
 double limited_restitution(double stiffness, double speed, double phase, Limiter limiter) {
   Wall wall;
@@ -214,8 +215,8 @@ double limited_restitution(double stiffness, double speed, double phase, Limiter
 }
 
 TEST(HardCaseRiseLimit, GuardSymmetricLimitThrowsTheTip) {
-  // The guard of HardCaseRiseLimit in friction_impact_test.cpp: active below K v = 300 N/s
-  // [PHYSICS 1.6].
+  // Guard of HardCaseRiseLimit in friction_impact_test.cpp: the limit adds energy below K v = 300
+  // N/s [PHYSICS 1.6].
   double most = 0;
   for (int i = 0; i < 50; ++i) {
     double last = 0;
@@ -230,7 +231,7 @@ TEST(HardCaseRiseLimit, GuardSymmetricLimitThrowsTheTip) {
                    most, 1.5, "1");
 }
 
-// Through the whole way: arm, board, wire, device and gate.
+// The complete chain: arm, board, wire, device and gate.
 
 scene::ArmFile vintage() {
   auto arm = scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
@@ -241,7 +242,7 @@ scene::ArmFile vintage() {
 
 TEST(HardCaseController, ArmFileStopsAStiffWall) {
   scene::ArmFile arm = vintage();
-  arm.simulated.hand.damping = 0.3;  // a hand that hardly helps
+  arm.simulated.hand.damping = 0.3;  // a hand with little damping
   stability::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 2500};
   const auto wild = stability::press_on_wall(arm, trial);
   trial.energy = scene::energy_settings(arm, 1000, EnergyStage::kPassivity);
@@ -251,7 +252,7 @@ TEST(HardCaseController, ArmFileStopsAStiffWall) {
   EXPECT_GT(wild->oscillation, 3 * tamed->oscillation);
   EXPECT_GT(tamed->gate.damped, 0u);
   EXPECT_LE(tamed->force_max, arm.limits.force_max + 1e-9);
-  // Allowance and onset: what may go out before the controller damps as hard as it may.
+  // Allowance and onset: the energy that may go out before the controller reaches its full damping.
   const double limit = 2e3 * (trial.energy.allowance + trial.energy.onset);
   EXPECT_LE(-1e3 * tamed->gate.energy_least, limit);
   record_hard_case(11, "2.5 N/mm through wire and gate, stage as shipped",
@@ -262,12 +263,13 @@ TEST(HardCaseController, ArmFileStopsAStiffWall) {
 }
 
 TEST(HardCaseController, BookedEnergyMatchesTheMotors) {
-  // What the observer sees through counts, mA and a late wire against what the motors did.
+  // The observer's result from counts, mA and a delayed wire, compared with the true work of the
+  // motors.
   scene::ArmFile arm = vintage();
   stability::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 2500};
   arm.simulated.hand.damping = 0.3;
   trial.energy = scene::energy_settings(arm, 1000, EnergyStage::kPassivity);
-  trial.energy.allowance = 100;  // watches only
+  trial.energy.allowance = 100;  // observes only
   trial.energy.reservoir = 100;
   const auto touch = stability::press_on_wall(arm, trial);
   ASSERT_TRUE(touch);
@@ -284,7 +286,7 @@ TEST(HardCaseBoundedWall, TwentyNewtonsPerMillimetreRest) {
   stability::WallTrial trial{.p_W = {0, 0, 0}, .n_W = {1, 0, 0}, .stiffness = 20'000};
   const auto wild = stability::press_on_wall(arm, trial);
   trial.energy = scene::energy_settings(arm, 1000, EnergyStage::kBounding);
-  // The hand's damping is part of what may be spent: a third of it is sure to be there.
+  // The hand's damping is part of the energy budget; a third of it is certain.
   trial.energy.slope = (0.005 + 1) / 0.0015;
   const auto tamed = stability::press_on_wall(arm, trial);
   ASSERT_TRUE(wild);

@@ -1,5 +1,6 @@
-// Hard case 40 of [PHYSICS 7]: a scene of 60 Hz under a servo of 1 kHz, through the whole way:
-// simulated arm, wire, device and gate. Its guard: the same scene's force, held, is active.
+// Hard case 40 of [PHYSICS 7]: a scene at 60 Hz under a servo loop at 1 kHz, through the complete
+// chain of simulated arm, wire, device and gate. Its guard: the force of the same scene, held
+// between updates, adds energy.
 
 #include <gtest/gtest.h>
 
@@ -44,14 +45,14 @@ scene::ArmFile phantom() {
   return *arm;
 }
 
-/// How the slow scene is felt.
+/// Force law for the slow scene.
 enum class Law {
-  kLocalModel,  // the product
-  kHeldForce,   // the naive way: the newest force, until there is another
-  kEveryTick,   // what both would like to be: the surface itself at 1 kHz
+  kLocalModel,  // the law of the program
+  kHeldForce,   // the naive law: the newest force is held until the next
+  kEveryTick,   // the reference: the surface itself at 1 kHz
 };
 
-/// One tick: what is true, and what was sent.
+/// True state and sent force of one tick.
 struct Row {
   double time = 0;             // s
   Vector3d p_WT{0, 0, 0};      // m, of the true tip
@@ -124,14 +125,14 @@ Felt run(const scene::ArmFile& arm, SlowSide& slow, Law law, const Way& way, dou
 
 constexpr double kBegin = 0.35;  // s; the soft start is over
 
-/// A throw: the speed of the tip when it came, and when it left.
+/// Speed of the tip before and after a throw.
 struct Throw {
   double in = 0, out = 0;  // m/s
   double e() const { return out / in; }
 };
 
-/// Lets the hand aim at the surface from `height` (m) above, by its spring; as in hard
-/// case 7 it stays there, so that spring and damper act during the impact.
+/// The hand's spring pulls the tip to the surface from `height` (m) above. As in hard case 7 the
+/// hand stays there, so its spring and damper act during the impact.
 Throw throw_from(double height, const scene::ArmFile& arm, const SlowSurface& surface, double phase,
                  Law law, double silent_from = 0, double silent_to = 0) {
   SlowSide slow(surface, phase);
@@ -150,7 +151,7 @@ Throw throw_from(double height, const scene::ArmFile& arm, const SlowSurface& su
     if (found.in == 0 && above(done.rows[k - 1]) && !above(done.rows[k])) {
       found.in = -done.rows[k - 1].v_WT.z();
     } else if (found.in > 0 && !above(done.rows[k - 1]) && above(done.rows[k])) {
-      // What is still on the wire has arrived two ticks later.
+      // Messages on the wire have arrived two ticks later.
       for (std::size_t i = k; i < std::min(k + 3, done.rows.size()); ++i) {
         found.out = std::max(found.out, done.rows[i].v_WT.z());
       }
@@ -186,8 +187,8 @@ TEST(HardCaseSlowModel, ThrownTipReturnsNoSpeed) {
       }
     }
   }
-  // What is felt of a surface that softens may be stiffer than it is by then, so that a tick's hold
-  // leaks a little more; and what differs by models differs in speed.
+  // The model of a surface that softens may be stiffer than the present surface, so holding it for
+  // a tick adds slightly more energy. Differences between models also change the speed.
   EXPECT_LE(most_over_direct, 1.05);
   EXPECT_GT(fastest, 1);
   record_hard_case(40, "60 Hz model, 9 surfaces, 0.03 to 1.1 m/s, 4 phases, wire and gate",
@@ -203,7 +204,7 @@ TEST(HardCaseSlowModel, SilentModelReturnsNoSpeed) {
   for (const Feel feel : {Feel::kEven, Feel::kStiffening, Feel::kSoftening}) {
     for (const double height : kHeights) {
       for (int begin = 0; begin < 8; ++begin) {
-        // From before the touch to its end.
+        // From before the contact to its end.
         const double from = kBegin + 0.01 * begin;
         const Throw thrown =
             throw_from(height, arm, {.feel = feel}, 0.5, Law::kLocalModel, from, from + 0.2);
@@ -229,7 +230,7 @@ TEST(HardCaseSlowModel, GuardHeldForceComesBackFaster) {
                    most, 1, "1");
 }
 
-/// Presses on a plane of this stiffness and tells how far the tip oscillates in the last 0.3 s, m.
+/// Presses on a plane of this stiffness. Returns the oscillation of the tip in the last 0.3 s, m.
 double pressed_oscillation(double stiffness, Law law) {
   const scene::ArmFile arm = phantom();
   SlowSide slow({.stiffness = stiffness});
@@ -247,7 +248,7 @@ double pressed_oscillation(double stiffness, Law law) {
 TEST(HardCaseSlowModel, GuardHeldForceObeysTheSlowPeriod) {
   const scene::ArmFile arm = phantom();
   const auto& simulated = arm.simulated;
-  // Computed for a whole period, then held for one: a delay of T, and the wire's.
+  // Computed for a whole period, then held for one: a delay of T plus that of the wire.
   const double period = 1.0 / 60;
   const double edge =
       stability::stiffness_edge({.mass = simulated.plant.mass + simulated.hand.mass,
@@ -269,8 +270,8 @@ TEST(HardCaseSlowModel, GuardHeldForceObeysTheSlowPeriod) {
                    1e3 * model, 0.2, "mm");
 }
 
-/// The largest change of what was sent from one tick to the next against the force, from `from`
-/// (s) on, where it is above 0.1 N: 5 mN, a quarter of what is felt [PHYSICS 6].
+/// Returns the largest relative change of the sent force from tick to tick, from `from` (s) on, for
+/// forces above 0.1 N: there 5 % is 5 mN, a quarter of the perception threshold [PHYSICS 6].
 double largest_jump(const std::vector<Row>& rows, double from) {
   double most = 0;
   for (std::size_t k = 1; k < rows.size(); ++k) {
@@ -281,7 +282,7 @@ double largest_jump(const std::vector<Row>& rows, double from) {
   return most;
 }
 
-/// Slides over a surface with 1.5 N and then presses harder, and tells what came of it.
+/// Slides over a surface with 1.5 N, then presses harder. Returns the results.
 Felt slide(SlowSide& slow, Law law, double speed) {
   const double over = 0.6 + 0.024 / speed;
   const Way way{{0, {-0.012, 0, 0.003}},
@@ -301,7 +302,8 @@ TEST(HardCaseSlowModel, ForceDoesNotJumpBetweenModels) {
   for (const Shape shape : {Shape::kPlane, Shape::kBall, Shape::kBowl}) {
     for (const Feel feel : {Feel::kEven, Feel::kStiffening, Feel::kSoftening}) {
       for (const double speed : {0.03, 0.1}) {
-        // 5 % are meant of the jump to a model; here it is all that a tick changes.
+        // The limit of 5 % is for the jump to a new model; the test applies it to the whole change
+        // of a tick.
         SlowSide slow({.shape = shape, .feel = feel}), naive({.shape = shape, .feel = feel});
         const Felt felt = slide(slow, Law::kLocalModel, speed);
         const double jump = largest_jump(felt.rows, 0.6);
@@ -312,7 +314,7 @@ TEST(HardCaseSlowModel, ForceDoesNotJumpBetweenModels) {
         Vector3d n_W;
         const Row& last = felt.rows.back();
         const double f = slow.surface.force(slow.surface.depth(last.p_WT, n_W));
-        // From a soft ball it slips away.
+        // It slips off a soft ball.
         if (last.v_WT.norm() > 1e-3) continue;
         ++rests;
         error = std::max(error, (last.f_sent_W - f * n_W).norm() / f);
@@ -365,12 +367,12 @@ TEST(HardCaseSlowModel, LastingSilenceEndsWithoutForce) {
     if (silent_at == 0) silent_at = row.time;
     force_silent = std::max(force_silent, row.f_wanted_W.norm());
   }
-  // The last state that was computed for, and half a second.
+  // Half a second after the last state for which a model was computed.
   EXPECT_NEAR(silent_at, 0.6 + 0.5, 0.04);
   EXPECT_EQ(force_silent, 0);
   EXPECT_EQ(felt.counters.faded, 1u);
-  EXPECT_EQ(felt.counters.refused, 1u);  // what was computed for a place of 1.4 s ago
-  // After that it is felt again, from nothing and without a jump.
+  EXPECT_EQ(felt.counters.refused, 1u);  // a model computed for a position 1.4 s old
+  // After that the force returns from zero, without a jump.
   double jump = 0;
   for (std::size_t k = 1; k < felt.rows.size(); ++k) {
     if (felt.rows[k].time < 1.95) continue;

@@ -1,5 +1,6 @@
-// Hard cases 9, 33 and 37 to 39 of [PHYSICS 7]: loops that stall, surfaces that snap, poses that
-// cannot, encoders and reports that lie. Through arm, board, wire, device and gate but for 33.
+// Hard cases 9, 33 and 37 to 39 of [PHYSICS 7]: loops that stall, surfaces that snap, singular
+// poses, wrong encoders and wrong reports. All but 33 use the complete chain of arm, board, wire,
+// device and gate.
 
 #include <gtest/gtest.h>
 
@@ -32,8 +33,8 @@ using driver::hfab::InputReport;
 using Eigen::Vector3d;
 using support::record_hard_case;
 
-/// Changes what the arm sends: `tamper` gets the number of the read and the report; an empty answer
-/// is a packet of 7 bytes.
+/// Changes the arm's reports: `tamper` gets the number of the read and the report; if it returns
+/// nothing, a packet of 7 bytes is read.
 class TamperedWire final : public driver::Transport {
  public:
   using Tamper = std::function<std::optional<InputReport>(int, InputReport)>;
@@ -64,11 +65,11 @@ class TamperedWire final : public driver::Transport {
   int reads_ = 0;
 };
 
-/// Presses on a wall at x = 0 of the vintage arm and keeps what was sent.
+/// Presses the vintage arm on a wall at x = 0 and stores the sent forces.
 struct Press {
   double stiffness = 800;      // N/m
   double encoder_step = 3e-5;  // m at the tip along x
-  double speed = 0.2;          // of the hand, m/s
+  double speed = 0.2;          // speed of the hand, m/s
   double press = 2;            // N
   TamperedWire::Tamper tamper = [](int, const InputReport& report) { return report; };
   std::function<void(std::uint64_t, driver::VirtualClock&, driver::ForceCommand&)> disturb =
@@ -84,11 +85,12 @@ struct Press {
   driver::EnergyGuardSettings energy;
   double current_at_end = 0;  // A
 
-  static constexpr double kEntry = 0.5;  // s; the hand begins to go in
+  static constexpr double kEntry = 0.5;  // s; the hand starts to move in
 
   void run(std::uint64_t ticks) {
     auto model = support::vintage_model();
-    // At home the lower link hangs: its joint alone moves the tip along x, by the link's length.
+    // In the home pose the lower link hangs: only its joint moves the tip along x, with the link's
+    // length as lever.
     model.encoders[2].counts_per_motor_turn =
         2 * std::numbers::pi * model.geometry.length_c / (model.drives[2].ratio * encoder_step);
     driver::DeviceSettings settings = support::vintage_settings();
@@ -143,7 +145,7 @@ struct Press {
   }
 };
 
-/// Runs a press whose loop stands still for 30 ms from tick `at` on.
+/// Runs a press whose loop stalls for 30 ms from tick `at` on.
 Press stalled_press(std::uint64_t at, const driver::EnergyGuardSettings& energy) {
   Press press;
   press.energy = energy;
@@ -162,7 +164,8 @@ TEST(HardCaseLoopStall, ContactReturnsWithin50ms) {
   for (const std::uint64_t at : {535u, 540u, 545u, 560u, 600u}) {
     const Press press = stalled_press(at, {});
     const std::size_t stall = at + 1;
-    first = std::max(first, press.rows[stall].sent);  // the tick that notices sends nothing
+    // The tick that detects the stall sends nothing
+    first = std::max(first, press.rows[stall].sent);
     std::size_t back = stall;
     while (back + 1 < press.rows.size() &&
            press.rows[back].sent < 0.999 * std::min(5.0, press.rows[back].wanted)) {
@@ -183,10 +186,10 @@ TEST(HardCaseLoopStall, ContactReturnsWithin50ms) {
 }
 
 TEST(HardCaseLoopStall, ControllerPreventsEnergyGain) {
-  // While the force is away the tip sinks in, and a wall that comes back pushes it out again: up to
-  // K (x1^2 - x0^2) / 2 that nobody gave. So the energy needs the controller. Its bound is twice
-  // the onset, and it sees a tick and a wire late: 2 * 0.1 mJ + F v (T + delay) with 5 N, 0.2 m/s,
-  // 2 ms.
+  // Without force the tip sinks in, and the returning wall pushes it out again: it adds up to K
+  // (x1^2 - x0^2) / 2. So the energy needs the controller. Its bound is twice the onset, and it
+  // acts with the delay of a tick and the wire: 2 * 0.1 mJ + F v (T + delay) with 5 N, 0.2 m/s, 2
+  // ms.
   double guarded = 0, bare = 0;
   for (const std::uint64_t at : {535u, 540u, 545u}) {
     const auto given = [at](const driver::EnergyGuardSettings& energy) {
@@ -251,7 +254,7 @@ TEST(HardCaseSnapInHand, ControllerCausesNoSecondSnap) {
   double sent = 0, spring = 0, midway = 0;
   std::int64_t snapped_at = -1;
   for (int k = 0; k < 8000; ++k) {
-    // In by 24 mm within 6 s, and there for two.
+    // In by 24 mm within 6 s, and held there for 2 s.
     rig.anchor = -std::min(k * 4e-6, 24e-3);
     rig.tick([&](double, double x, double v, double dt) {
       const double in = std::max(0.0, -x);
@@ -268,15 +271,15 @@ TEST(HardCaseSnapInHand, ControllerCausesNoSecondSnap) {
   }
   ASSERT_GE(snapped_at, 0);
   EXPECT_EQ(base.snaps(), 1);
-  // What the hand gave is on the account; of that the surface keeps and released its part, and the
-  // controller took the rest.
+  // The account contains the energy from the hand. The surface stores or dissipated a part of it,
+  // and the controller dissipated the rest.
   const double taken = -rig.work();
   const double booked = gate.energy();
   EXPECT_GT(taken, 4e-3);
-  // The last tick is not booked yet; it rests then.
+  // The last tick is not booked yet; the tip is then at rest.
   EXPECT_NEAR(booked / taken, 1, 0.01);
   const double kept = base.energy() + base.released() + spring * spring / (2 * kContact);
-  // A held force lags by half a tick; with the mean of two ticks the surface's own account closes.
+  // A held force lags by half a tick; with the mean of two ticks the account of the surface closes.
   EXPECT_NEAR(kept / midway, 1, 0.01);
   record_hard_case(33, "snap under passivity control and hand", "== snaps",
                    static_cast<double>(base.snaps()), 1, "1");
@@ -314,7 +317,7 @@ TEST(HardCaseSingularPose, CurrentsAreFiniteAndClamped) {
     const driver::MotorCurrents currents(force, Eigen::Matrix3d::Identity(), J, model.drives);
     ASSERT_TRUE(currents.amperes().allFinite());
     most = std::max(most, currents.amperes().cwiseAbs().maxCoeff());
-    // What such torques make at the tip, in the directions in which it can move.
+    // Force of such torques at the tip, in the directions in which it can move.
     Vector3d tau;
     for (int k = 0; k < 3; ++k) {
       const auto& drive = model.drives[static_cast<std::size_t>(k)];
@@ -354,8 +357,8 @@ double largest_step(const std::vector<Press::Row>& rows, std::size_t from) {
 
 TEST(HardCaseEncoderFault, ImpossibleGlitchesAreDropped) {
   constexpr double kAllowed = 0.2 * 5;  // N
-  // Beyond this the driver takes a jump for none of the tip's: 1000 m/s^2 for 1 ms, and the rest of
-  // its last movement.
+  // The driver rejects a larger jump as impossible for the tip: 1000 m/s^2 for 1 ms, plus the rest
+  // of its last movement.
   constexpr double kJump = 1.5e-3;  // m
   double most = 0, most_dropped = 0;
   int drops = 0, missed = 0;
@@ -403,7 +406,7 @@ TEST(HardCaseEncoderFault, LastingOffsetIsAFault) {
     return report;
   };
   off.run(900);
-  EXPECT_EQ(off.fault, Fault::kCountsJumped);  // by 23 mm, which no tip does
+  EXPECT_EQ(off.fault, Fault::kCountsJumped);  // by 23 mm, which is impossible for a tip
   EXPECT_EQ(off.rows[802].sent, 0);
   EXPECT_EQ(off.current_at_end, 0);
   double most = 0, step = 0;
@@ -442,7 +445,7 @@ TEST(HardCaseBadNumbers, EndInNoForce) {
     }
     EXPECT_EQ(press.current_at_end, 0);
   }
-  // The smallest numbers are numbers.
+  // Denormal numbers are valid.
   Press tiny;
   tiny.disturb = [](std::uint64_t tick, driver::VirtualClock&, driver::ForceCommand& command) {
     if (tick == 800) command.f_T_W = Vector3d(5e-324, -5e-324, 1e-310);
@@ -450,7 +453,7 @@ TEST(HardCaseBadNumbers, EndInNoForce) {
   tiny.run(900);
   EXPECT_EQ(tiny.fault, Fault::kNone);
   EXPECT_LT(std::abs(tiny.rows[800].sent), 1e-300);
-  // One torn packet is passed over; an arm that sends nothing else is silent.
+  // One torn packet is skipped; an arm that sends only torn packets counts as silent.
   Press torn;
   torn.tamper = [](int read, const InputReport& report) -> std::optional<InputReport> {
     if (read == 700 || read >= 800) return {};

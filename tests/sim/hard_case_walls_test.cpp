@@ -1,5 +1,5 @@
 // Hard cases 1 to 8 of [PHYSICS 7]: sampled walls in one dimension, on the plant's exact map,
-// against the laws. PHANTOM-like set unless said otherwise.
+// compared with the laws. The constants are those of a PHANTOM unless stated otherwise.
 
 #include <gtest/gtest.h>
 
@@ -36,8 +36,8 @@ using support::WallRig;
 
 constexpr double kMass = 0.075, kStep = 3e-5;
 
-/// Returns how fast the logarithm of an oscillation's energy grows, 1/s: from the second tenth to
-/// the last.
+/// Returns the growth rate of the logarithm of an oscillation's energy, 1/s, from the second tenth
+/// to the last.
 double growth(const Wall& wall, double duration) {
   WallRig rig(wall);
   rig.state.x = 1e-3;
@@ -53,15 +53,16 @@ double growth(const Wall& wall, double duration) {
   return std::log(late / early) / (0.8 * duration);
 }
 
-/// Finds the stiffness by which growth is zero between two, taking it as straight in between.
+/// Returns the stiffness with zero growth between two, by linear interpolation.
 double edge_between(double low, double growth_low, double high, double growth_high) {
   return low + (high - low) * growth_low / (growth_low - growth_high);
 }
 
 TEST(HardCaseStiffestWall, LimitIsTheLatencyBudget) {
-  // b / L leaves out that a late wall oscillates slower: with u tan u = b L / m the limit of a late
-  // spring is (b / L) u / sin u, 4.6 % more at 250 Hz and five periods of delay. The plain law is
-  // held to 3 % where that is below 1 % (b L / m <= 0.06), the full one to 3 % everywhere.
+  // b / L neglects that a delayed wall oscillates slower. With u tan u = b L / m the limit of a
+  // delayed spring is (b / L) u / sin u, 4.6 % more at 250 Hz and five periods of delay. The simple
+  // law must hold to 3 % where that difference is below 1 % (b L / m <= 0.06), the full law to 3 %
+  // everywhere.
   double worst = 0, worst_plain = 0;
   for (const std::int64_t period_ns :
        {4'000'000, 2'000'000, 1'000'000, 500'000, 333'333, 250'000, 125'000}) {
@@ -96,7 +97,7 @@ TEST(HardCaseStiffestWall, LimitIsTheLatencyBudget) {
                    "<= largest error of K_max against b / L", worst_plain, 0.03, "1");
 }
 
-/// Draws the times between ticks, ns.
+/// Distribution of the times between ticks.
 enum class Jitter { kUniform, kExponential, kDropouts };
 
 std::int64_t draw(Jitter jitter, support::Random& random) {
@@ -111,7 +112,7 @@ std::int64_t draw(Jitter jitter, support::Random& random) {
   return 0;
 }
 
-/// Returns the growth of an oscillation's energy per tick under jitter, from the same draws for any
+/// Returns the growth of an oscillation's energy per tick under jitter, with the same draws for any
 /// stiffness.
 double jittered_growth(Jitter jitter, double stiffness, double viscous, int ticks) {
   AxisDynamics axis =
@@ -122,7 +123,7 @@ double jittered_growth(Jitter jitter, double stiffness, double viscous, int tick
   for (int k = 0; k < ticks; ++k) {
     axis.step(state, {.force = -stiffness * state.x}, draw(jitter, random));
     const double energy = kMass * state.v * state.v + stiffness * state.x * state.x;
-    if (energy > 1e-3 || energy < 1e-9) {  // keep it a number
+    if (energy > 1e-3 || energy < 1e-9) {  // rescaled to avoid overflow and underflow
       const double scale = std::sqrt(1e-6 / energy);
       state.x *= scale;
       state.v *= scale;
@@ -144,7 +145,8 @@ TEST(HardCaseJitter, CostFollowsTheMeanSquarePeriod) {
       mean += period / ticks;
       square += period * period / ticks;
     }
-    // Seldom long gaps of a stiff wall are beyond the law (K T_gap^2 / m <= 0.5): there b is less.
+    // Rare long gaps with a stiff wall are beyond the law (K T_gap^2 / m <= 0.5), so b is smaller
+    // there.
     const double viscous = jitter == Jitter::kDropouts ? 0.1 : 0.5;
     const double latency =
         scene::latency_of({.period = mean, .period_spread = std::sqrt(square - mean * mean)});
@@ -159,13 +161,16 @@ TEST(HardCaseJitter, CostFollowsTheMeanSquarePeriod) {
                    "<= largest error of K_max against b / (E[T^2] / 2 E[T])", worst, 0.03, "1");
 }
 
-/// Returns the fastest growth per tick of a wall in any of 21 x 112 hands of mass and spring alone.
+/// Returns the fastest growth per tick of a wall with any of 21 x 112 hands of mass and spring
+/// without damping.
 double worst_operator(double stiffness, double damping, double delay, double viscous) {
   double worst = 0;
   for (int i = 0; i < 21; ++i) {
-    const double mass = 1e-3 * std::pow(10, i * 0.2);  // 1 g to 10 kg, with the device's own
+    // 1 g to 10 kg, including the mass of the device
+    const double mass = 1e-3 * std::pow(10, i * 0.2);
     for (int j = 0; j < 112; ++j) {
-      const double angle = 0.02 * std::pow(M_PI / 0.02, j / 111.0);  // of a tick, up to Nyquist's
+      // Phase per tick, up to the Nyquist frequency
+      const double angle = 0.02 * std::pow(M_PI / 0.02, j / 111.0);
       const double total = mass * std::pow(angle / 1e-3, 2);
       const double hand = std::max(0.0, total - stiffness);
       worst = std::max(worst, stability::growth_per_tick({.mass = mass,
@@ -191,7 +196,7 @@ TEST(HardCasePassiveHands, PassiveWallNeverGrows) {
     const double passive = worst_operator(1000, set.damping, set.delay, 1.02 * needed) - 1;
     EXPECT_LE(passive, 1e-9) << set.damping << " " << set.delay;
     most = std::max(most, passive);
-    if (set.damping > 0) continue;  // there the bound is met by a mass of nothing only
+    if (set.damping > 0) continue;  // there only a mass of zero reaches the bound
     const double active = worst_operator(1000, set.damping, set.delay, 0.95 * needed) - 1;
     EXPECT_GT(active, 1e-9) << set.damping << " " << set.delay;
     least = std::min(least, active);
@@ -201,8 +206,8 @@ TEST(HardCasePassiveHands, PassiveWallNeverGrows) {
                    least, 1e-9, "1");
 }
 
-/// The encoder of the vintage arm's lower link as its board samples it and the driver reads it: the
-/// link hangs at home, and its joint alone moves the tip along x.
+/// The encoder of the vintage arm's lower link, as its board samples it and the driver reads it.
+/// The link hangs at home, and only its joint moves the tip along x.
 class EncodedTip {
  public:
   explicit EncodedTip(double step)
@@ -210,7 +215,7 @@ class EncodedTip {
         firmware_(device_sim::Firmware::make(driver::arm_model(model_), {}).value()),
         arm_(model_) {}
 
-  /// Returns how far from home the driver sees a tip that truly is `x` away, m.
+  /// Returns the measured position of a tip that is truly at `x` from home, m.
   double seen(double x) const {
     Vector3d q = support::vintage_home();
     q[2] += x / model_.geometry.length_c;
@@ -234,14 +239,14 @@ class EncodedTip {
   driver::hfab::HfabArm arm_;
 };
 
-/// Lets an adversary step in by `way` just after a sample and out just after the next, across an
-/// encoder that stands at an edge; tells what he gains, J.
+/// An adversary steps in by `way` just after a sample and out just after the next, with the encoder
+/// at an edge. Returns the energy gain, J.
 double adversary_gain(const EncodedTip& tip, double stiffness, double step, double coulomb,
                       double viscous, double period, double way) {
-  double x = 0.5 * step * (1 - 1e-6);  // he stands a hair before an edge
+  double x = 0.5 * step * (1 - 1e-6);  // just before an edge
   const double wall = tip.seen(x);
   double gain = 0;
-  // The wall's force is held from sample to sample, and works on what he does in between.
+  // The wall's force is held from sample to sample, and does work on the motion in between.
   for (const double move : {way, -way}) {
     const double force = stiffness * std::max(0.0, tip.seen(x) - wall);  // outwards
     gain -= force * move + coulomb * std::abs(move) + viscous * move * move / period;
@@ -257,7 +262,7 @@ TEST(HardCaseEncoderAdversary, GainsOnlyBelowHalfAQuantum) {
     for (const double step : {3e-6, 3e-5}) {
       for (const double share : {0.98, 1.02}) {
         const double coulomb = share * stiffness * step / 2;
-        const double viscous = stiffness * 1e-3 / 2 * 1.02;  // the other bound is met
+        const double viscous = stiffness * 1e-3 / 2 * 1.02;  // the other bound is satisfied
         const EncodedTip tip(step);
         double best = -std::numeric_limits<double>::infinity();
         for (int i = 1; i <= 4000; ++i) {
@@ -279,10 +284,10 @@ TEST(HardCaseEncoderAdversary, GainsOnlyBelowHalfAQuantum) {
   record_hard_case(4, "adversary at f_c = 0.98 K step / 2", "> gain over K step d", least, 0, "1");
 }
 
-/// What became of an oscillation.
+/// End of an oscillation.
 struct Ending {
   bool rests = false;
-  double amplitude = 0;  // of the last tenth, m, peak to peak
+  double amplitude = 0;  // peak to peak in the last tenth, m
 };
 
 Ending ending(const Wall& wall, double x, double v, double duration) {
@@ -315,7 +320,7 @@ TEST(HardCaseFrictionRegions, FourRegionsMatchTheMap) {
         wall.two_sided = true;
         wall.encoder_step = kStep;
         wall.delay_ns = delay * 1'000'000;
-        // Half a quantum of push: between two levels of force there is no rest but in friction.
+        // A push of half a quantum: between two levels of force only friction permits rest.
         wall.pull = stiffness * kStep / 2;
         const bool damped = beta_share > 1, holds = sigma_share > 1;
         const support::WallRegion region = support::region_of(support::place_of_wall(
@@ -323,7 +328,7 @@ TEST(HardCaseFrictionRegions, FourRegionsMatchTheMap) {
         bool all_rest = true;
         double cycle = 0;
         for (int i = 0; i < 12; ++i) {
-          // Slow starts: well below the speed above which friction holds no more.
+          // Slow starts: well below the speed above which friction does not hold.
           const Ending end = ending(wall, kStep * i / 12, 0.02 * (i % 4), 8);
           all_rest = all_rest && end.rests;
           cycle = std::max(cycle, end.amplitude / kStep);
@@ -382,12 +387,13 @@ TEST(HardCaseOscillationLimit, DryFrictionHoldsUpToItsSpeed) {
   record_hard_case(6, "start at 1.1 v*", "> speed after 3 s over v*", fast, 2, "1");
 }
 
-/// Throws the tip against the wall; the first sample falls `phase` of a period after the entry.
+/// Throws the tip against the wall and returns the restitution; the first sample is `phase` of a
+/// period after the entry.
 double restitution(const Wall& wall, double speed, double phase) {
   WallRig rig(wall);
   rig.state = {.x = 0, .v = -speed};
   rig.drift(static_cast<std::int64_t>(phase * static_cast<double>(wall.period_ns)));
-  // Out again, and what is still on the wire has arrived.
+  // Out again, after all messages on the wire have arrived.
   const auto late = static_cast<int>(wall.delay_ns / wall.period_ns) + 2;
   for (int k = 0, outside = 0; k < 20'000 && outside < late; ++k) {
     rig.tick();

@@ -1,5 +1,5 @@
-// Sixteen ways in which an arm on the desk is not that of its file: each is named by a check, or
-// what was not tested says so.
+// Sixteen differences between an arm and its file: each is reported by a check, or listed as not
+// tested.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kMass = 0.03, kLength = 0.1;  // kg, m
 
-/// An arm whose driver believes a file, and which is another.
+/// An arm whose driver uses the file of a different arm.
 class Desk {
  public:
   explicit Desk(const char* name)
@@ -69,7 +69,7 @@ class Desk {
   std::vector<std::unique_ptr<device_sim::SimulatedArm>> arms_;
 };
 
-/// Returns what a check said.
+/// Returns the text of a check.
 std::string outcome_text(const HilResult& result) {
   std::string text = result.name + ": " + result.text;
   for (const session::Figure& figure : result.figures) {
@@ -98,13 +98,13 @@ std::vector<HilResult> run(Desk& desk, const HilOptions& options, bool attended)
   return run_hil_suite(rig, options, {});
 }
 
-/// A mistake, the checks of which one must fail with a person, and what says so without one: a
-/// check that fails, or a word of what was not tested.
+/// A mistake, the checks of which one must fail with a user, and its detection without a user: a
+/// failing check, or a phrase in the list of untested properties.
 struct Mistake {
   const char* name;
   std::function<void(scene::ArmFile& truth, scene::ArmFile& believed)> make;
   const char* named_by;
-  const char* untested;  // empty: motion shows it
+  const char* untested;  // empty if motion shows it
 };
 
 void PrintTo(const Mistake& mistake, std::ostream* out) {
@@ -138,7 +138,7 @@ const Mistake kMistakes[] = {
        truth.model.encoders[0].sign *= -1;
        truth.model.drives[0].sign *= -1;
      },
-     "feel_check", "encoders' signs"},
+     "feel_check", "signs of the encoders"},
     {"HomeOffset", [](File& truth, File&) { truth.model.encoders[1].home_counts += 2000; },
      "home_pose", "Home position"},
     {"DelayOneMillisecondMore",
@@ -151,7 +151,7 @@ const Mistake kMistakes[] = {
      },
      "constants", ""},
     {"BaseTilted", [](File& truth, File&) { truth.R_WB = tilt(10) * truth.R_WB; }, "constants",
-     "stands aslant"},
+     "tilt of the base"},
     {"LinkCLonger", [](File& truth, File&) { links(truth).length_c *= 1.05; }, "known_length",
      "scale of positions"},
     {"LinkBLonger", [](File& truth, File&) { links(truth).length_b *= 1.05; }, "known_length",
@@ -197,7 +197,7 @@ TEST_P(HilMistake, IsNamedOrUntestedWithoutAPerson) {
   Desk desk("vintage_phantom");
   mistake.make(desk.truth, desk.believed);
   HilOptions options;
-  options.checked = true;  // its feel check was passed before the mistake came
+  options.checked = true;  // the feel check was passed before the mistake was made
   options.only = {"feel_check", "constants"};
   const auto results = run(desk, options, false);
   std::string untested;

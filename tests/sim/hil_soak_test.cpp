@@ -15,11 +15,11 @@ namespace {
 
 using support::figure_value;
 
-constexpr double kRise = 80;      // K, of a winding at its continuous current in the end
+constexpr double kRise = 80;  // K, final temperature rise of a winding at its continuous current
 constexpr double kCurrent = 0.3;  // A
 
-/// A file whose motors carry so much (A), and are as warm after so long (s) as 63 % of the end;
-/// its simulated motors are as it says.
+/// Returns a file with this continuous current (A) and thermal time constant (s, to 63 % of the
+/// final heat); its simulated motors are the same.
 scene::ArmFile warm_arm(double current, double time_constant) {
   scene::ArmFile file = scene::load_arm("vintage_phantom").value();
   file.heat.continuous_current.fill(current);
@@ -28,7 +28,7 @@ scene::ArmFile warm_arm(double current, double time_constant) {
   heat.rise = kRise;
   heat.continuous_current.setConstant(current);
   heat.time_constant.setConstant(time_constant);
-  heat.resistance = 0.0039;  // of copper
+  heat.resistance = 0.0039;  // temperature coefficient of copper, 1/K
   return file;
 }
 
@@ -41,7 +41,7 @@ HilResult soak_of(const scene::ArmFile& file, const scene::ArmFile& arm, double 
                     minutes);
 }
 
-/// The names of the figures that miss their goals.
+/// Returns the names of the figures that miss their goals.
 std::string missed(const HilResult& result) {
   std::string names;
   for (const session::Figure& one : result.figures) {
@@ -50,7 +50,7 @@ std::string missed(const HilResult& result) {
   return names;
 }
 
-TEST(HilSoak, PassesMotorsThatWarmAsTheirFileSays) {
+TEST(HilSoak, PassesMotorsThatWarmAsInTheirFile) {
   // The short form is three time constants of motors that warm quickly; the long one an hour.
   const scene::ArmFile file = support::long_form() ? warm_arm(kCurrent, 60) : warm_arm(kCurrent, 6);
   const HilResult soak = soak_of(file, file, support::long_form() ? 60 : 0.3);
@@ -61,16 +61,17 @@ TEST(HilSoak, PassesMotorsThatWarmAsTheirFileSays) {
       figure_value(soak.figures, "motor_heat") / figure_value(soak.figures, "heat_in_the_end"), 1,
       0.3);
   EXPECT_LT(figure_value(soak.figures, "heat_from_model"), 1e-6);
-  // Cooler copper resists less than at its limit, and is never warmer than the driver thinks.
+  // Cool copper has less resistance than at its limit, so it is never warmer than the driver's
+  // estimate.
   EXPECT_LE(figure_value(soak.figures, "winding_of_thought"), 1);
   EXPECT_GT(figure_value(soak.figures, "winding_of_thought"), 0.7);
   EXPECT_NE(soak.text.find("never warmer than that"), std::string::npos) << soak.text;
 }
 
-TEST(HilSoak, FindsMotorsThatHeatMoreThanTheirFileSays) {
+TEST(HilSoak, FindsMotorsThatHeatMoreThanInTheirFile) {
   for (const double times : {1.2, 1.5, 2.0}) {
     scene::ArmFile file = warm_arm(kCurrent, 60);
-    // Cold copper resists a quarter less than at its limit, which hides a fifth.
+    // Cold copper has a quarter less resistance than at its limit, which hides an error of a fifth.
     if (times < 1.5) file.simulated.drive_train.heat.resistance = 0;
     scene::ArmFile arm = file;
     arm.simulated.drive_train.heat.continuous_current /= std::sqrt(times);
@@ -99,8 +100,8 @@ TEST(HilSoak, FindsMotorsThatWereWarmBefore) {
   EXPECT_EQ(missed(soak_of(file, arm, 0.1)), "winding_of_thought");
 }
 
-TEST(HilSoak, SeesHeatLowerTheForceAndNeverPassTheLimit) {
-  // Motors so weak that this motion is far too much for them.
+TEST(HilSoak, HeatReducesTheForceAndStaysWithinTheLimit) {
+  // Motors that are far too weak for this motion.
   const scene::ArmFile file = warm_arm(0.06, 3);
   const HilResult soak = soak_of(file, file, 0.3);
   EXPECT_EQ(missed(soak), "") << soak.text;
@@ -109,20 +110,20 @@ TEST(HilSoak, SeesHeatLowerTheForceAndNeverPassTheLimit) {
   EXPECT_LE(figure_value(soak.figures, "motor_heat"), 1);
   EXPECT_GT(figure_value(soak.figures, "current_of_allowed"), 0.95);
   EXPECT_LE(figure_value(soak.figures, "winding_heat"), 1);
-  EXPECT_NE(soak.text.find("Heat lowered the force in"), std::string::npos) << soak.text;
+  EXPECT_NE(soak.text.find("The force was reduced because of heat in"), std::string::npos)
+      << soak.text;
 }
 
-TEST(HilSoak, SaysWhatCannotBeKnownOfAnArm) {
+TEST(HilSoak, ReportsWhatCannotBeDetermined) {
   scene::ArmFile file = scene::load_arm("vintage_phantom").value();
   const HilResult cold = soak_of(file, file, 0.1);
   EXPECT_EQ(cold.outcome, HilOutcome::kPassed) << cold.text;
-  EXPECT_NE(cold.text.find("Its motors do not warm in the simulation"), std::string::npos)
-      << cold.text;
+  EXPECT_NE(cold.text.find("The simulation has no motor heat"), std::string::npos) << cold.text;
   file.heat = {};
   const HilResult unknown = soak_of(file, file, 0.1);
   EXPECT_EQ(unknown.outcome, HilOutcome::kPassed) << unknown.text;
   EXPECT_EQ(figure_value(unknown.figures, "motor_heat"), -1);
-  EXPECT_NE(unknown.text.find("does not say what its motors carry"), std::string::npos)
+  EXPECT_NE(unknown.text.find("the arm file has no joints: continuous_current"), std::string::npos)
       << unknown.text;
 }
 

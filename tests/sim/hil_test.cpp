@@ -25,7 +25,7 @@ namespace {
 
 using support::figure_value;
 
-/// What is tried: the file that the user has, and the arm that stands on the desk.
+/// The user's file, and the arm under test.
 struct Bench {
   scene::ArmFile file, arm;
   HilOptions options{};
@@ -53,7 +53,7 @@ struct Bench {
   }
 };
 
-/// The names of the checks that failed, in order of the alphabet.
+/// Returns the names of the failed checks in alphabetical order.
 std::string failed(const std::map<std::string, HilResult>& results) {
   std::string names;
   for (const auto& [name, result] : results) {
@@ -62,7 +62,7 @@ std::string failed(const std::map<std::string, HilResult>& results) {
   return names;
 }
 
-TEST(Hil, PassesAnArmThatIsAsItsFileSays) {
+TEST(Hil, PassesAnArmThatMatchesItsFile) {
   for (const char* name : {"vintage_phantom", "woodenhaptics_teensy", "polhem"}) {
     SCOPED_TRACE(name);
     Bench bench(name);
@@ -82,7 +82,7 @@ TEST(Hil, PassesAnArmThatIsAsItsFileSays) {
   }
 }
 
-TEST(Hil, KnowsLinksThatTheFileNames) {
+TEST(Hil, AccountsForLinksOfTheFile) {
   const auto name_links = [](scene::ArmFile& file, double more) {
     auto& links = file.simulated.links;
     links.inertia = more * Eigen::Vector3d(4e-4, 5e-4, 3e-4);
@@ -101,12 +101,12 @@ TEST(Hil, KnowsLinksThatTheFileNames) {
     const HilResult result = check_constants(rig, {});
     EXPECT_EQ(result.outcome, more == 1 ? HilOutcome::kPassed : HilOutcome::kFailed) << result.text;
     EXPECT_LT(figure_value(result.figures, "dry_friction_difference"), 1) << result.text;
-    EXPECT_EQ(figure_value(result.figures, "mass_difference"), -1) << "a mass in one place";
+    EXPECT_EQ(figure_value(result.figures, "mass_difference"), -1) << "mass at one place";
     EXPECT_EQ(figure_value(result.figures, "mass_x_difference") <= 1, more == 1);
   }
 }
 
-/// What fails when the arm on the desk is another than its file's.
+/// Returns the failed checks if the arm differs from its file.
 std::string failed_with(const std::function<void(scene::ArmFile&)>& change, double spring = 0) {
   Bench bench("vintage_phantom");
   bench.options.spring = spring;
@@ -114,7 +114,7 @@ std::string failed_with(const std::function<void(scene::ArmFile&)>& change, doub
   return failed(bench.results());
 }
 
-TEST(Hil, NamesWhatIsWrongWithAnArm) {
+TEST(Hil, NamesTheWrongProperty) {
   EXPECT_EQ(failed_with([](scene::ArmFile& arm) { arm.simulated.wire.delay_out_ns += 1'500'000; }),
             "constants stiffest_wall");
   EXPECT_EQ(failed_with([](scene::ArmFile& arm) { arm.simulated.wire.loss = 0.1; }),
@@ -122,8 +122,8 @@ TEST(Hil, NamesWhatIsWrongWithAnArm) {
   EXPECT_EQ(
       failed_with([](scene::ArmFile& arm) { arm.simulated.firmware.watchdog_ns = 400'000'000; }),
       "feel_check");
-  // A motor that pulls four fifths: without a scale all but the others' share is seen by its
-  // spring.
+  // A motor with four fifths of its torque. Without a scale only the ratio to the other motors is
+  // visible; the spring shows the rest.
   EXPECT_EQ(
       failed_with(
           [](scene::ArmFile& arm) { arm.simulated.firmware.wiring.motor_gain.setConstant(0.8); },
@@ -135,7 +135,8 @@ TEST(Hil, NamesWhatIsWrongWithAnArm) {
             "constants");
 }
 
-/// The edge of a free simulated arm whose wire takes `delay_ms`; `ratio`: to that of the law.
+/// Returns the edge of a free simulated arm whose wire has the delay `delay_ms`; sets its ratio to
+/// that of the law.
 EdgeOfWall edge_with(double delay_ms, const EdgeSearch& search, double& ratio,
                      double coulomb = 0.04) {
   scene::ArmFile arm = scene::load_arm("vintage_phantom").value();
@@ -154,29 +155,30 @@ EdgeOfWall edge_with(double delay_ms, const EdgeSearch& search, double& ratio,
   return *found;
 }
 
-TEST(Hil, FindsTheWallThatTheLawSays) {
+TEST(Hil, FindsTheWallOfTheLaw) {
   const EdgeSearch search{.factor = 1.02, .starts = 9};
   for (const double delay_ms : {0.0, 1.0, 2.0, 4.0}) {
     double ratio = 0;
     const EdgeOfWall edge = edge_with(delay_ms, search, ratio);
     EXPECT_TRUE(edge.grew);
-    // The law is that of an oscillation of constant speed. A late wall is soft, its oscillation
-    // slow, and dry friction takes a third of the kick's speed before the wall turns it round.
+    // The law is that of an oscillation with constant speed. A delayed wall is soft and its
+    // oscillation slow; dry friction takes a third of the kick's speed before the wall reverses the
+    // tip.
     EXPECT_GT(ratio, 0.9);
     EXPECT_LT(ratio, delay_ms <= 1 ? 1.1 : 1.5);
     EXPECT_LE(edge.force_most, kHilForceMax);
   }
 }
 
-TEST(Hil, SeesASwingGrowThatGivesLittleEnergy) {
+TEST(Hil, DetectsGrowthWithLittleEnergy) {
   double ratio = 0;
   const EdgeOfWall edge = edge_with(1, {.first = 30, .starts = 9}, ratio, 0.004);
   EXPECT_TRUE(edge.grew);
   EXPECT_NEAR(ratio, 1, 0.25);
 }
 
-TEST(Hil, TakesAWallOffThatGivesEnergy) {
-  // Ten times the kick's energy, and what one tick adds to it.
+TEST(Hil, RemovesAWallThatAddsEnergy) {
+  // Ten times the kick's energy, plus the energy of one tick.
   const double kick = 0.5 * 0.075 * 0.03 * 0.03;  // J
   double ratio = 0;
   const EdgeOfWall edge = edge_with(4, {.coarse = 8, .starts = 1}, ratio);
@@ -185,9 +187,9 @@ TEST(Hil, TakesAWallOffThatGivesEnergy) {
   EXPECT_LT(edge.given_most, 20 * kick);
 }
 
-/// An arm of the file whose tip begins up to 3 mm beside: at other places between the steps of its
-/// encoders. Its way to the motors, or its friction, is such that the law has its stiffest wall
-/// `times` that of the file's.
+/// Returns an arm of the file whose tip begins up to 3 mm away, at other positions between encoder
+/// steps. Its delay to the motors, or its friction, makes the stiffest wall by the law `times` that
+/// of the file.
 scene::ArmFile arm_of_wall(const scene::ArmFile& file, int seed, double times, bool by_friction) {
   scene::ArmFile arm = file;
   std::mt19937 draw(static_cast<unsigned>(seed));
@@ -211,7 +213,7 @@ scene::ArmFile arm_of_wall(const scene::ArmFile& file, int seed, double times, b
   return arm;
 }
 
-/// The check of the stiffest wall alone.
+/// Runs only the check of the stiffest wall.
 HilResult wall_of(const scene::ArmFile& file, const scene::ArmFile& arm, bool full) {
   const std::atomic<bool> never{false};
   return check_stiffest_wall({.file = file,
@@ -253,21 +255,22 @@ TEST(Hil, JudgesTheStiffestWallToATenth) {
   }
 }
 
-TEST(Hil, HoldsTheTrueMedianInNineteenOfTwentyIntervals) {
+TEST(Hil, IntervalsContainTheTrueMedian) {
   std::mt19937 draw(static_cast<std::uint32_t>(support::seed_of(5)));
   for (const int count : {kMedianLeast, 9, 33, 65}) {
     const int tries = 4000;
     int held = 0;
     for (int i = 0; i < tries; ++i) {
-      std::vector<double> values;  // of a skew distribution: its median is ln 2
+      std::vector<double> values;  // a skew distribution with the median ln 2
       for (int k = 0; k < count; ++k) {
         values.push_back(-std::log((static_cast<double>(draw()) + 0.5) / 4294967296.0));
       }
       const MedianInterval found = median_interval(values);
       held += found.low <= std::numbers::ln2 && std::numbers::ln2 <= found.high ? 1 : 0;
     }
-    // Four deviations of 4,000 draws are 1.4 %; by the binomial they hold it in 96.9, 96.1, 96.5
-    // and 95.4 %, and one rank further in less than 93.
+    // Four standard deviations of 4,000 draws are 1.4 %. By the binomial distribution the intervals
+    // contain the median in 96.9, 96.1, 96.5 and 95.4 %, and in less than 93 % if they were one
+    // rank narrower.
     EXPECT_GT(held, 0.95 * tries) << count;
     EXPECT_LT(held, 0.985 * tries) << count;
   }
@@ -289,14 +292,14 @@ TEST(Hil, MeasuresTheWatchdogOfAFreeArm) {
       EXPECT_EQ(watchdog.outcome, HilOutcome::kPassed) << watchdog.text;
       EXPECT_NEAR(figure_value(watchdog.figures, "watchdog_time"), static_cast<double>(time_ms), 5);
     } else if (time_ms == 300) {
-      // The tip has gone 15 mm long before, and is let go.
+      // The tip has moved 15 mm long before, and is released.
       EXPECT_EQ(watchdog.outcome, HilOutcome::kFailed) << watchdog.text;
       EXPECT_EQ(figure_value(watchdog.figures, "watchdog_seen"), 0);
     }
   }
 }
 
-TEST(Hil, PushesNothingBeforeTheFeelCheckIsPassed) {
+TEST(Hil, AppliesNoForceBeforeTheFeelCheck) {
   Bench bench("vintage_phantom");
   bench.attended = false;
   bench.options.checked = false;
@@ -308,11 +311,11 @@ TEST(Hil, PushesNothingBeforeTheFeelCheckIsPassed) {
   }
 }
 
-TEST(Hil, PushesNoFurtherAgainstAMotorThatIsTurnedRound) {
+TEST(Hil, StopsPushingAgainstAReversedMotor) {
   for (int motor = 0; motor < 3; ++motor) {
     Bench bench("vintage_phantom");
     bench.attended = false;
-    bench.options.checked = true;  // the wire was turned round since
+    bench.options.checked = true;  // the wire was reversed after the feel check
     bench.arm.simulated.firmware.wiring.motor_gain[motor] = -1;
     const auto results = bench.results();
     EXPECT_EQ(failed(results), "constants") << motor;

@@ -1,4 +1,4 @@
-// A hand that presses into a sharp hollow must rest there: two or three planes hold it at once.
+// A hand that presses into a sharp groove must rest there: two or three planes hold it at once.
 
 #include <gtest/gtest.h>
 
@@ -28,9 +28,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kFelt = 0.02;           // N RMS [PHYSICS 6]
-constexpr double kHeldByFriction = 0.2;  // N; what dry friction takes of a hand's force at most
+constexpr double kHeldByFriction = 0.2;  // N; max. part of a hand's force that dry friction holds
 
-// Every way of contact that is recommended somewhere.
+// Every recommended contact setting.
 constexpr std::array kContacts{"tracker: edge_planes",
                                "tracker: edge_planes, blending: sized_band",
                                "tracker: edge_planes, blending: fixed_band",
@@ -43,20 +43,20 @@ constexpr std::array kContacts{"tracker: edge_planes",
 
 constexpr std::array kArms{"vintage_phantom", "woodenhaptics", "polhem"};
 
-// Says what the force did in the last half second.
+// Force in the last half second.
 struct Rest {
   bool ran = false;
-  double rms = 0;           // N, of the force sent about its mean
-  double peak_to_peak = 0;  // N, of one axis at most
+  double rms = 0;           // N, RMS of the sent force around its mean
+  double peak_to_peak = 0;  // N, max. of the axes
   double mean = 0;          // N
 };
 
-// Says what is pressed into a hollow, and how.
+// Parameters of a press into a groove.
 struct Pressed {
   std::string arm, contact;
   double stiffness = 0;     // N/m
-  double force = 0;         // N, with which the hand presses
-  Vector3d aside{1, 0, 0};  // where it comes from, in x and y
+  double force = 0;         // N, force of the hand
+  Vector3d aside{1, 0, 0};  // direction from which it comes, in x and y
   bool bare = false;        // without dry friction and encoder steps, which hide small oscillations
 };
 
@@ -66,13 +66,13 @@ std::string point(const Vector3d& p) {
   return text;
 }
 
-// Presses the hand of the arm's file into the hollow, through wire, arm and gate, and looks at the
+// Presses the hand of the arm's file into the groove, through wire, arm and gate, and evaluates the
 // last half second.
 Rest rest_in(const support::Hollow& hollow, const Pressed& pressed) {
   const auto folder = support::scratch_folder();
   const auto mesh = folder / "hollow.off";
   if (!render::save_mesh(hollow.mesh, mesh)) return {};
-  // Scenes put the middle of the mesh's box somewhere: where it is already.
+  // Scenes place the middle of the mesh's box; here it stays at its position.
   const auto middle = [&] {
     Vector3d least = hollow.mesh.vertices[0], most = least;
     for (const Vector3d& p : hollow.mesh.vertices) {
@@ -83,7 +83,8 @@ Rest rest_in(const support::Hollow& hollow, const Pressed& pressed) {
   }();
   const Vector3d goal =
       hollow.bottom + pressed.force * (1 / 300.0 + 1 / pressed.stiffness) * hollow.pressed;
-  // In fast and beside the goal, then to it at once: what is held by dry friction is woken up.
+  // The hand moves in fast next to the goal, then jumps to it, so that dry friction does not hold
+  // the tip.
   const Vector3d above = hollow.bottom + Vector3d(0, 0, 0.03);
   const Vector3d aside = goal + 0.004 * Vector3d(pressed.aside.x(), pressed.aside.y(), 0);
   const auto file = folder / "hollow.yaml";
@@ -130,7 +131,7 @@ Rest rest_in(const support::Hollow& hollow, const Pressed& pressed) {
           .mean = mean.norm()};
 }
 
-TEST(HollowRest, OfEveryTrackerInAGrooveOf59Degrees) {
+TEST(HollowRest, EveryTrackerRestsInAGrooveOf59Degrees) {
   const double slope = std::atan2(0.017, 0.03), wall = std::hypot(0.017, 0.03);
   const support::Hollow hollow = support::groove(slope, slope, wall, wall, {-0.03, 0.03});
   for (const char* contact : kContacts) {
@@ -139,13 +140,13 @@ TEST(HollowRest, OfEveryTrackerInAGrooveOf59Degrees) {
     std::printf("  %-62s %.3f N RMS, %.3f N peak to peak, mean %.2f N\n", contact, rest.rms,
                 rest.peak_to_peak, rest.mean);
     EXPECT_LE(rest.rms, kFelt) << contact;
-    // The hand's spring and the surface's in a row, from goal to crease. With one face at a time it
+    // Springs of hand and surface in series, from goal to crease. With only one face at a time it
     // was 1.39 N (edge planes, compact) and 1.60 N (blended).
     EXPECT_NEAR(rest.mean, 1.69, 0.02) << contact;
   }
 }
 
-TEST(HollowRest, OfEveryTrackerInRandomGroovesAndPits) {
+TEST(HollowRest, EveryTrackerRestsInRandomGroovesAndPits) {
   const int count = support::long_form() ? 1000 : 40;
   std::array<int, kContacts.size()> loud{}, off{};
   std::array<double, kContacts.size()> most{};
@@ -175,7 +176,7 @@ TEST(HollowRest, OfEveryTrackerInRandomGroovesAndPits) {
                                  << pressed.stiffness << " N/m, " << pressed.force << " N, "
                                  << pressed.arm << (pressed.bare ? ", bare" : "");
       pressed_on += rest.mean > 0.5 * pressed.force;
-      // The crease itself holds a tip that is pressed between the normals of a groove.
+      // The crease holds a tip that is pressed between the normals of a groove.
       if (hollow.turn > 1.1 && hollow.groove && rest.mean > 0.5 * pressed.force) {
         ++in_crease;
         off[k] += std::abs(rest.mean - pressed.force) > kHeldByFriction;
@@ -189,7 +190,7 @@ TEST(HollowRest, OfEveryTrackerInRandomGroovesAndPits) {
   for (std::size_t k = 0; k < kContacts.size(); ++k) {
     std::printf("  %-62s %d of %d oscillate, at most %.3f N RMS; %d have too little force\n",
                 kContacts[k], loud[k], count, most[k], off[k]);
-    // Out of a shallow or short one a tip may slide.
+    // A tip may slide out of a shallow or short groove.
     EXPECT_LE(off[k], in_crease / static_cast<int>(30 * kContacts.size())) << kContacts[k];
   }
 }

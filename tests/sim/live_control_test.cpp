@@ -39,9 +39,9 @@ std::filesystem::path shipped(const std::string& name) {
   return std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (name + ".yaml");
 }
 
-/// Writes the rubber ball with one coefficient of friction in place of two: where it sticks until
-/// it slips, two copies that differ by a hair slip in different ticks, and the jump that is
-/// friction's own would be taken for the knob's.
+/// Writes the rubber ball with one coefficient of friction instead of two. With stiction, two
+/// copies with a tiny difference slip in different ticks, and the jump of the friction would be
+/// attributed to the knob.
 std::filesystem::path rubber_that_does_not_jump() {
   std::ifstream from(shipped("rubber"));
   std::string text((std::istreambuf_iterator<char>(from)), {});
@@ -72,7 +72,7 @@ std::uint64_t hash_of(const session::Session& session) {
   return hash.value();
 }
 
-/// One copy of a scene's force law with its knobs.
+/// A copy of a scene's force law with its knobs.
 struct Copy {
   explicit Copy(const scene::Scene& scene)
       : objects(scene::SceneObjects::build(scene).value()), knobs(scene, objects->touch()) {}
@@ -100,15 +100,15 @@ driver::TickRecord told(const driver::DeviceState& state, const driver::ForceCom
   return record;
 }
 
-/// What turning a knob does to a force.
+/// Effect of a knob on the force.
 struct Turned {
-  double largest_step = 0;  // by the turning of one tick alone, N
-  double range = 0;         // how far the values went, of their bounds
-  double felt = 0;          // how different the force was at its most from that without, N
+  double largest_step = 0;  // max. change of the force due to the knob's change in one tick, N
+  double range = 0;         // range of the values, relative to their bounds
+  double felt = 0;          // max. difference from the force without the change, N
 };
 
-/// Feeds a run's own states to two copies of its scene; the second one's knob is always one tick
-/// behind. So the difference of their forces is what the turning does in a tick.
+/// Feeds the states of a run to two copies of its scene; the knob of the second copy is always one
+/// tick behind. So the difference of their forces is the effect of the knob in a tick.
 Turned turn(const std::filesystem::path& scene_file, const std::string& knob_name) {
   Turned turned;
   SessionOptions options;
@@ -154,9 +154,9 @@ Turned turn(const std::filesystem::path& scene_file, const std::string& knob_nam
   return turned;
 }
 
-TEST(LiveKnobs, NeverStepTheForceWhileTheyAreTurnedFromEndToEnd) {
+TEST(LiveKnobs, ForceHasNoStepsWhileAKnobTurns) {
 #if defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "no threads meet in it";
+  GTEST_SKIP() << "this test uses no threads";
 #endif
   const double most = session::LiveKnobs::kForceRate * 1e-3;  // N in a tick of 1 kHz
   const std::filesystem::path rubber = rubber_that_does_not_jump();
@@ -170,21 +170,21 @@ TEST(LiveKnobs, NeverStepTheForceWhileTheyAreTurnedFromEndToEnd) {
     SCOPED_TRACE(scene.stem().string() + ", " + knob);
     const Turned turned = turn(scene, knob);
     EXPECT_LE(turned.largest_step, most);
-    EXPECT_GT(turned.felt, 0.1) << "it was not felt at all";
-    EXPECT_GT(turned.range, 0.9) << "it was not turned from end to end";
-    std::printf("%s, %s: %.4f N in a tick at most by turning it (allowed %.3f)\n",
+    EXPECT_GT(turned.felt, 0.1) << "the knob had no effect on the force";
+    EXPECT_GT(turned.range, 0.9) << "the knob did not cover its range";
+    std::printf("%s, %s: at most %.4f N in a tick due to the knob (allowed %.3f)\n",
                 scene.stem().c_str(), knob, turned.largest_step, most);
   }
 }
 
 class KnobsOfScene : public ::testing::TestWithParam<std::string> {};
 
-// Bodies that move or dent change their depth faster than the last tick shows. Where static
-// friction is higher than sliding friction, turning makes the tip slip a tick earlier or later:
-// that step is the law's own.
-TEST_P(KnobsOfScene, ChangeTheForceByNoMoreThanIsStated) {
+// Bodies that move or dent change their depth faster than in the last tick. If static friction is
+// higher than sliding friction, a knob makes the tip slip a tick earlier or later: that step
+// belongs to the law.
+TEST_P(KnobsOfScene, ForceChangesStayWithinTheStatedLimit) {
 #if defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "no threads meet in it";
+  GTEST_SKIP() << "this test uses no threads";
 #endif
   if (GetParam() == "elephant") THIMBLE_NEEDS_MESHES();
   const bool slips = GetParam() == "rubber" || GetParam() == "tin_can";
@@ -211,7 +211,7 @@ TEST_P(KnobsOfScene, ChangeTheForceByNoMoreThanIsStated) {
 INSTANTIATE_TEST_SUITE_P(ByName, KnobsOfScene, ::testing::ValuesIn(support::scenes_of_one_arm()),
                          [](const auto& scene) { return scene.param; });
 
-TEST(LiveKnobs, TurnWithoutTheHeapAndEndOnTheValueThatIsWanted) {
+TEST(LiveKnobs, ReachTheirTargetWithoutHeap) {
   SessionOptions options;
   options.share = true;
   const auto session = open(shipped("rubber"), options);
@@ -229,7 +229,7 @@ TEST(LiveKnobs, TurnWithoutTheHeapAndEndOnTheValueThatIsWanted) {
   EXPECT_EQ(reader->knob(0), 123);
 }
 
-TEST(HeldKnobs, TurnWithoutTheHeapAndEndOnTheValueThatIsWanted) {
+TEST(HeldKnobs, ReachTheirTargetWithoutHeap) {
   SessionOptions options;
   const auto plain = open(shipped("rubber"), options);
   EXPECT_TRUE(plain->knobs().empty());
@@ -251,14 +251,14 @@ TEST(HeldKnobs, TurnWithoutTheHeapAndEndOnTheValueThatIsWanted) {
   });
   EXPECT_EQ(calls, 0);
   EXPECT_EQ(session->knobs()[0].value, 123);
-  ASSERT_TRUE(session->turn_knob("ball: stiffness", 200));  // again, once it stands
+  ASSERT_TRUE(session->turn_knob("ball: stiffness", 200));  // again, after it has settled
   for (int i = 0; i < 1000; ++i) law(state);
   EXPECT_EQ(session->knobs()[0].value, 200);
 }
 
-TEST(LiveKnobs, LeaveTheLoopStableAtBothEndsOfEveryKnob) {
+TEST(LiveKnobs, LoopIsStableAtBothEndsOfEveryKnob) {
 #if defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "no threads meet in it";
+  GTEST_SKIP() << "this test uses no threads";
 #endif
   std::vector<std::string> scenes{"rubber", "sandpaper", "honey"};
   if (support::long_form()) {
@@ -280,13 +280,13 @@ TEST(LiveKnobs, LeaveTheLoopStableAtBothEndsOfEveryKnob) {
       reader->turn_knob(turned / 2, turned % 2 == 0 ? knob.least : knob.most);
       session->run(std::atomic<bool>{false});
       EXPECT_EQ(session->device().fault(), driver::Fault::kNone);
-      // What takes energy goes on taking it; 1 uJ is what rounding and counts make of nothing.
+      // Dissipation continues; 1 uJ is the effect of rounding and encoder counts.
       EXPECT_LT(session->statistics().energy_to_hand(), 1e-6);
     }
   }
 }
 
-TEST(LiveControl, AViewerThatOnlyWatchesChangesNoBitOfTheRun) {
+TEST(LiveControl, PassiveViewerLeavesTheRunBitIdentical) {
   for (const char* name : {"rubber", "clay", "floating_block", "water_balloon"}) {
     SCOPED_TRACE(name);
     SessionOptions options;
@@ -328,10 +328,10 @@ TEST(LiveControl, ShowsShapedAndMovedObjectsWhereTheyAre) {
   render::TriangleMesh seen_shape = clay->setup().objects().mesh_W(0);
   const auto first = seen_shape.vertices;
   reader->shape(0, seen_shape);
-  EXPECT_NE(seen_shape.vertices, first) << "it left a print";
+  EXPECT_NE(seen_shape.vertices, first) << "the ball must have a print";
   EXPECT_EQ(seen_shape.vertices, clay->mesh_now().vertices);
 
-  // One that splits its triangles, read anew every 50 ticks and at the end alone.
+  // A shape that splits its triangles, read every 50 ticks, and only at the end.
   const auto tablet = open(shipped("clay_tablet"), options);
   const auto looker = reader_of(*tablet);
   render::TriangleMesh followed = tablet->setup().objects().mesh_W(0), at_once = followed;
@@ -365,7 +365,7 @@ TEST(LiveControl, ShowsShapedAndMovedObjectsWhereTheyAre) {
   EXPECT_EQ(seen.pose[0].p_WB, real.pose[0].p_WB);
 }
 
-TEST(LiveControl, APauseInVirtualTimeChangesNoBit) {
+TEST(LiveControl, VirtualPauseLeavesTheRunBitIdentical) {
   SessionOptions options;
   options.duration = 2;
   const auto alone = open(shipped("rubber"), options);
@@ -380,15 +380,15 @@ TEST(LiveControl, APauseInVirtualTimeChangesNoBit) {
   }
   const std::uint64_t ticks = reader->counters().ticks;
   std::this_thread::sleep_for(std::chrono::milliseconds(30));
-  EXPECT_EQ(reader->counters().ticks, ticks) << "it stands still";
+  EXPECT_EQ(reader->counters().ticks, ticks) << "no ticks during a pause";
   EXPECT_LT(ticks, 2000u);
   reader->ask_pause(false);
   servo.join();
   EXPECT_EQ(hash_of(*alone), hash_of(*paused));
 }
 
-/// Leads the hand in virtual time to a point over the ball and then into it.
-TEST(LiveControl, AHandThatTheMouseLeadsFeelsTheScene) {
+/// Moves the hand in virtual time to a point over the ball and then into it.
+TEST(LiveControl, MouseHandTouchesTheScene) {
   SessionOptions options;
   options.share = true;
   options.hand_by_mouse = true;
@@ -396,7 +396,7 @@ TEST(LiveControl, AHandThatTheMouseLeadsFeelsTheScene) {
   const auto session = open(shipped("rubber"), options);
   const auto reader = reader_of(*session);
   EXPECT_TRUE(reader->scene().hand_by_mouse);
-  // Far outside of the workspace to the side, and 8 mm into the ball: what cannot be is bounded.
+  // Targets far outside of the workspace and 8 mm inside the ball are limited.
   ASSERT_TRUE(reader->lead_hand({0, 0, 0.002}, true));
   session->run(std::atomic<bool>{false});
   double fastest = 0, force = 0;
@@ -408,7 +408,7 @@ TEST(LiveControl, AHandThatTheMouseLeadsFeelsTheScene) {
   EXPECT_EQ(end.tick, 1499u);
   EXPECT_TRUE(end.in_contact);
   EXPECT_GT(force, 0.5);
-  EXPECT_LT(fastest, 1.5 * device_sim::Hand::kSpeedMax) << "an arm on a hand overshoots a little";
+  EXPECT_LT(fastest, 1.5 * device_sim::Hand::kSpeedMax) << "an arm in a hand overshoots slightly";
 }
 
 TEST(LiveControl, KeepsTheHandWithinTheWorkspace) {
@@ -429,7 +429,7 @@ TEST(LiveControl, KeepsTheHandWithinTheWorkspace) {
   EXPECT_EQ(session->device().fault(), driver::Fault::kNone);
 }
 
-TEST(LiveControl, APauseFadesTheForceOutAndInWithoutAStep) {
+TEST(LiveControl, PauseFadesTheForceWithoutSteps) {
   SessionOptions options;
   options.share = true;
   const auto session = open(shipped("rubber"), options);
@@ -440,7 +440,7 @@ TEST(LiveControl, APauseFadesTheForceOutAndInWithoutAStep) {
   control.join(*session->shared(), false, never);
   session::SceneLaw law(copy.objects->touch());
   law.set_viewers(control, true);
-  // A tip that has come into the ball from above and rests there.
+  // A tip that entered the ball from above and rests there.
   driver::DeviceState state;
   state.dt = 1e-3;
   double full = 0, before = 0;
@@ -469,8 +469,8 @@ TEST(LiveControl, APauseFadesTheForceOutAndInWithoutAStep) {
   }
 }
 
-// The other arms fade by the pause that the first one leads.
-TEST(LiveControl, PauseIsLedByAnArmInFaultAsWell) {
+// The other arms fade with the pause of the first one.
+TEST(LiveControl, ArmInFaultStillLeadsThePause) {
   SessionOptions options;
   options.share = true;
   const auto session = open(shipped("rubber"), options);
@@ -507,7 +507,8 @@ TEST(LiveControl, RealTimePauseHoldsTheHandWithoutForce) {
     if (!reader->newest(tick)) return 0.0;
     return Eigen::Map<const Eigen::Vector3d>(tick.f_wanted_W.data()).norm();
   };
-  // Wall time is waited for here, and never judged: a fault by a machine that pauses ends the run.
+  // The test waits in wall-clock time but does not judge it: a fault due to a slow machine ends the
+  // run.
   const auto wait_for = [&](auto condition) {
     for (int i = 0; i < 2000 && !condition() && reader->state() != session::RunState::kEnded; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -521,13 +522,13 @@ TEST(LiveControl, RealTimePauseHoldsTheHandWithoutForce) {
     EXPECT_EQ(force(), 0);
     driver::TickRecord held;
     EXPECT_TRUE(reader->newest(held));
-    EXPECT_TRUE(held.in_contact) << "the hand stands where it was";
+    EXPECT_TRUE(held.in_contact) << "the hand did not move";
     reader->ask_pause(false);
     wait_for([&] { return force() > 0.3; });
   }
   stop.store(true);
   servo.join();
-  if (faulty) GTEST_SKIP() << "the machine paused for longer than the arm's watchdog waits";
+  if (faulty) GTEST_SKIP() << "the machine paused for longer than the arm's watchdog time";
 }
 
 }  // namespace

@@ -19,9 +19,9 @@
 #include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
-// Several arms in one run of which some are real: another simulated arm stands for each of those,
-// behind a link that the session takes for a board's. Virtual time, so that no load of the machine
-// matters.
+// Several arms in one run, some of them real. A separate simulated arm represents each real one,
+// behind a link that the session treats as a board. Virtual time makes the test independent of the
+// machine's load.
 
 namespace thimble {
 namespace {
@@ -31,7 +31,7 @@ using Eigen::Vector3d;
 const std::filesystem::path kSource(THIMBLE_SOURCE_DIR);
 const std::atomic<bool> kNobodyStops{false};
 
-/// The link to an arm whose cable can be pulled.
+/// A link to an arm whose cable can be pulled.
 class PulledLink final : public driver::ArmLink {
  public:
   PulledLink(std::unique_ptr<driver::ArmLink> link, const bool& pulled)
@@ -56,7 +56,8 @@ class PulledLink final : public driver::ArmLink {
   const bool& pulled_;
 };
 
-/// Two boards that are simulated apart from the session, and what the user is told and presses.
+/// Two boards that are simulated outside of the session, with the messages to the user and the keys
+/// pressed.
 class MixedArms : public ::testing::Test {
  protected:
   MixedArms() {
@@ -70,7 +71,7 @@ class MixedArms : public ::testing::Test {
                  .ask = [this](const std::string& line) { told_ += line + "\n"; }};
   }
 
-  /// Makes the arm `name` of the scene real: its tip rests by `away` (m) from its home pose.
+  /// Makes the arm `name` of the scene real: its tip rests at `away` (m) from its home pose.
   void make_real(const std::string& name, const Vector3d& away = Vector3d::Zero()) {
     session::RealArmUse use;
     use.arm.kind = driver::ArmKind::kPolhem;
@@ -106,10 +107,11 @@ class MixedArms : public ::testing::Test {
   std::string told_;
   double force_most_ = 4;
   bool pulled_ = false;
-  std::vector<std::unique_ptr<scene::ArmSimulation>> boards_;  // outlive the sessions of a test
+  // They outlive the sessions of a test
+  std::vector<std::unique_ptr<scene::ArmSimulation>> boards_;
 };
 
-TEST_F(MixedArms, ASimulatedHandBesideARealOneBeginsWithTheForces) {
+TEST_F(MixedArms, SimulatedHandStartsWithTheForces) {
   make_real("right");
   auto made = prepared();
   ASSERT_TRUE(made) << made.error().message;
@@ -122,7 +124,7 @@ TEST_F(MixedArms, ASimulatedHandBesideARealOneBeginsWithTheForces) {
   ASSERT_TRUE(session.open_arm());
   EXPECT_EQ(session.device(0).stage(), driver::DeviceStage::kIdle);
   EXPECT_EQ(session.device(1).stage(), driver::DeviceStage::kIdle);
-  // Five seconds in which the real arm is not yet where it should be.
+  // For five seconds the real arm is not yet at its start pose.
   driver::Clock& clock = session.setup().clock();
   for (int tick = 0; tick < 5000; ++tick) {
     clock.sleep_until_ns(clock.now_ns() + 1'000'000);
@@ -136,12 +138,12 @@ TEST_F(MixedArms, ASimulatedHandBesideARealOneBeginsWithTheForces) {
   for (int tick = 0; tick < 1400; ++tick) ASSERT_FALSE(session.step(kNobodyStops)) << tick;
   EXPECT_EQ(session.device(0).fault(), driver::Fault::kNone);
   EXPECT_EQ(session.device(1).fault(), driver::Fault::kNone);
-  EXPECT_NEAR(waited_at, -0.03, 0.004) << "its hand waited";
-  EXPECT_GT(session.device(0).state().p_WT.z(), waited_at + 0.03) << "and lifts the beam now";
+  EXPECT_NEAR(waited_at, -0.03, 0.004) << "the hand waited";
+  EXPECT_GT(session.device(0).state().p_WT.z(), waited_at + 0.03) << "the hand lifts the beam now";
   EXPECT_GT(session.device(0).f_sent_W().norm(), 0.3);
 }
 
-TEST_F(MixedArms, EachRealOneMustStandWhereItBegins) {
+TEST_F(MixedArms, EachRealArmMustBeAtItsStartPose) {
   make_real("left");
   make_real("right", {0, 0, 0.04});
   const auto refused = session::Session::open(kSource / "app/scenes/two_hands.yaml", options_);
@@ -150,7 +152,7 @@ TEST_F(MixedArms, EachRealOneMustStandWhereItBegins) {
   EXPECT_NE(refused.error().message.find("away from its home pose"), std::string::npos);
 }
 
-TEST_F(MixedArms, ARealOneGetsNoMoreThanItsTerms) {
+TEST_F(MixedArms, RealArmStaysWithinItsLimits) {
   force_most_ = 0.5;
   make_real("right");
   auto made = prepared();
@@ -159,12 +161,12 @@ TEST_F(MixedArms, ARealOneGetsNoMoreThanItsTerms) {
   EXPECT_GT((*made)->setup().arm_file(0).limits.force_max, 4);
   EXPECT_EQ((*made)->setup().feel_check(1), scene::FeelCheckState::kNone);
   EXPECT_EQ((*made)->setup().feel_check(0), scene::FeelCheckState::kSimulated);
-  // It stands where the scene puts it.
+  // Its base is where the scene puts it.
   EXPECT_NEAR((*made)->setup().arm_file(1).R_WB(0, 0),
               -scene::load_arm("vintage_phantom").value().R_WB(0, 0), 1e-12);
 }
 
-TEST_F(MixedArms, APulledCableTakesAllForcesOrItsOwn) {
+TEST_F(MixedArms, PulledCableStopsAllArmsOrOnlyItsOwn) {
   for (const auto rule : {scene::FaultRule::kTogether, scene::FaultRule::kApart}) {
     SCOPED_TRACE(rule == scene::FaultRule::kApart ? "apart" : "together");
     pulled_ = false;
@@ -195,7 +197,7 @@ TEST_F(MixedArms, APulledCableTakesAllForcesOrItsOwn) {
     EXPECT_EQ(session.device(0).f_sent_W().isZero(0), together);
     EXPECT_EQ(told_.find("left: Force is off (other_arm)") != std::string::npos, together) << told_;
     if (!together) continue;
-    // Enter asks for it, and is refused as long as the other is gone.
+    // Enter requests it, and is refused while the other arm is disconnected.
     key_ = session::EnterKey::kPressed;
     watches.step();
     for (int tick = 0; tick < 3; ++tick) ASSERT_FALSE(session.step(kNobodyStops));
@@ -204,7 +206,7 @@ TEST_F(MixedArms, APulledCableTakesAllForcesOrItsOwn) {
   }
 }
 
-TEST_F(MixedArms, EnterLetsForcesThroughForAllArmsAgain) {
+TEST_F(MixedArms, EnterReactivatesAllArms) {
   make_real("left");
   make_real("right");
   auto made = prepared();
@@ -222,7 +224,7 @@ TEST_F(MixedArms, EnterLetsForcesThroughForAllArmsAgain) {
   ASSERT_EQ(session.device(1).fault(), driver::Fault::kOverSpeed);
   for (int tick = 0; tick < 300; ++tick) ASSERT_FALSE(session.step(kNobodyStops));
   watches.step();
-  EXPECT_EQ(session.device(0).fault(), driver::Fault::kOtherArm) << "nobody pressed Enter";
+  EXPECT_EQ(session.device(0).fault(), driver::Fault::kOtherArm) << "Enter was not pressed";
   key_ = session::EnterKey::kPressed;
   watches.step();
   for (int tick = 0; tick < 3; ++tick) ASSERT_FALSE(session.step(kNobodyStops));
@@ -232,7 +234,7 @@ TEST_F(MixedArms, EnterLetsForcesThroughForAllArmsAgain) {
   EXPECT_EQ(session.device(1).stage(), driver::DeviceStage::kActive);
 }
 
-TEST_F(MixedArms, AViewerSeesAndPausesAllOfThem) {
+TEST_F(MixedArms, ViewerShowsAndPausesAllArms) {
   make_real("right");
   options_.share = true;
   auto made = prepared();
@@ -246,9 +248,9 @@ TEST_F(MixedArms, AViewerSeesAndPausesAllOfThem) {
   EXPECT_EQ(shown.arms[1].in_scene, "right");
   EXPECT_EQ(shown.arms[1].device, "board_of_right");
   EXPECT_EQ(shown.arms[1].p_WB, session.setup().arm_file(1).p_WB);
-  EXPECT_TRUE(shown.knobs.empty()) << "which would turn one arm's alone";
+  EXPECT_TRUE(shown.knobs.empty()) << "the knob would change only one arm";
   driver::TickRecord tick;
-  EXPECT_FALSE((*reader)->newest_of(1, tick)) << "there is none yet";
+  EXPECT_FALSE((*reader)->newest_of(1, tick)) << "no tick yet";
   ASSERT_TRUE(session.open_arm());
   ASSERT_TRUE(session.activate());
   for (int i = 0; i < 1400; ++i) ASSERT_FALSE(session.step(kNobodyStops));
@@ -259,7 +261,7 @@ TEST_F(MixedArms, AViewerSeesAndPausesAllOfThem) {
   EXPECT_FALSE((*reader)->newest_of(0, tick));
   EXPECT_FALSE((*reader)->newest_of(2, tick));
   ASSERT_GT(session.device(0).f_sent_W().norm(), 0.3);
-  // Paused, the force of all fades; afterwards it is back.
+  // In a pause the forces of all arms fade; afterwards they return.
   (*reader)->ask_pause(true);
   for (int i = 0; i < 400; ++i) ASSERT_FALSE(session.step(kNobodyStops));
   for (std::size_t arm = 0; arm < 2; ++arm) {

@@ -11,8 +11,8 @@
 #include "thimble/session/recording.h"
 #include "thimble/session/session.h"
 
-// How the stylus is turned, and each arm's own wire, through the whole way: hand, gimbal, encoders,
-// reports, driver, law, recording.
+// Orientation of the stylus, and each arm's own wire, through the complete chain: hand, gimbal,
+// encoders, reports, driver, law, recording.
 
 namespace thimble {
 namespace {
@@ -54,7 +54,7 @@ TEST(OwnWire, WoodenHapticsKeepsItsForces) {
   EXPECT_EQ(hash_of(*own), hash_of(*before));
 }
 
-TEST(Orientation, ComesFromTheGimbalOfThePolhemAndChangesNoForce) {
+TEST(Orientation, PolhemGimbalChangesNoForce) {
   const auto with = open_arm("polhem", {.duration = 2});
   const auto without = open_arm("polhem", {.duration = 2, .adjust = [](scene::Scene& scene) {
                                              scene.arms.front().arm.model.gimbal.reset();
@@ -73,7 +73,7 @@ TEST(Orientation, ComesFromTheGimbalOfThePolhemAndChangesNoForce) {
   for (const auto& row : without->ticks()) ASSERT_EQ(row.q_WT, driver::TipQuaternion{});
 }
 
-TEST(Orientation, IsSeenAgainByAReplayToTheBit) {
+TEST(Orientation, ReplayIsBitIdentical) {
   const fs::path file = support::scratch_folder() / "stylus.h5";
   session::SessionOptions options{.duration = 1};
   options.record = file;

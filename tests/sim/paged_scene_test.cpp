@@ -18,7 +18,7 @@
 namespace thimble {
 namespace {
 
-/// Writes a scene with a ring in pages, 90 mm wide, and with lines of one's own in it.
+/// Writes a scene with a paged ring, 90 mm wide, and with the given lines in its object.
 std::filesystem::path scene(const std::string& object_lines, const std::string& station) {
   const auto folder = support::scratch_folder();
   if (!std::filesystem::exists(folder / "ring.pages")) {
@@ -44,7 +44,7 @@ std::string refusal(const std::string& object_lines, const std::string& station)
   return opened ? "" : opened.error().message;
 }
 
-TEST(PagedScene, IsTouchedFromTheDiskTheSameInEveryRun) {
+TEST(PagedScene, RunsFromDiskAreBitIdentical) {
   std::vector<std::array<double, 3>> forces;
   for (int run = 0; run < 2; ++run) {
     const auto opened = session::Session::open(scene("", ""), {});
@@ -60,7 +60,7 @@ TEST(PagedScene, IsTouchedFromTheDiskTheSameInEveryRun) {
     EXPECT_EQ(session.setup().objects().paging()->misses, 0u);
     EXPECT_GE(session.setup().objects().paging()->loads, 4u);
     EXPECT_GT(session.setup().objects().triangles(), 90'000u);
-    // On top of the tube, of 0.0127 m with bumps, and beside where the tip slides off.
+    // On top of the tube of 0.0127 m with bumps, or next to it where the tip slides off.
     for (const auto& row : rows) {
       EXPECT_TRUE(!row.in_contact || std::abs(row.p_WT[2] - 0.0112) < 0.0025) << row.p_WT[2];
     }
@@ -73,7 +73,7 @@ TEST(PagedScene, IsTouchedFromTheDiskTheSameInEveryRun) {
   }
 }
 
-TEST(PagedScene, RefusesWhatNeedsTheWholeMeshWithASentence) {
+TEST(PagedScene, RefusesFeaturesThatNeedTheWholeMesh) {
   EXPECT_EQ(refusal("    contact: {tracker: compact}\n", ""), "");
   EXPECT_NE(refusal("    contact: {tracker: offset}\n", "").find("a mesh in pages is touched"),
             std::string::npos);
@@ -85,11 +85,11 @@ TEST(PagedScene, RefusesWhatNeedsTheWholeMeshWithASentence) {
             std::string::npos);
 }
 
-TEST(PagedScene, IsTouchedOnTheWallClockWithALoaderOfItsOwn) {
+TEST(PagedScene, RealTimeRunUsesALoaderThread) {
   session::SessionOptions options;
   options.clock = session::ClockKind::kWall;
   options.duration = 1.2;
-  // A machine may be too busy for the loop; nothing else may end it, and one run comes so far.
+  // A busy machine may end the loop, but nothing else may; one of the runs must get this far.
   bool loaded = false;
   for (int run = 0; run < 20 && !loaded; ++run) {
     const auto opened = session::Session::open(scene("", ""), options);

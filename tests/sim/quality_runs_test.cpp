@@ -1,4 +1,4 @@
-// Every shipped scene at every quality, from the wire up.
+// Every shipped scene at every quality, through the complete chain.
 #include <gtest/gtest.h>
 
 #include <array>

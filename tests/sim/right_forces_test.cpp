@@ -1,4 +1,4 @@
-// Forces that are right arrive, through scene, gate, wire and arm, with each arm's gate as shipped.
+// Valid forces pass unchanged through scene, gate, wire and arm, with the shipped gate of each arm.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ Vector3d plain(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
 }
 
-/// Runs a scene and expects that every force after the soft start was sent as it was wanted.
+/// Runs a scene and expects that every force after the soft start was sent as requested.
 void expect_untouched(const std::filesystem::path& scene, std::size_t arms = 1,
                       const std::function<void(scene::Scene&)>& adjust = {}) {
   session::SessionOptions options;
@@ -114,19 +114,20 @@ TEST(RightForces, APushedBlockIsFeltWhole) {
   expect_untouched(shipped("floating_block"));
 }
 
-// Programs, as `thimble exec` and the ROS topic pass them on: the whole force is the program's.
+// Forces of programs, as with `thimble exec` and the ROS topic: the program computes the whole
+// force.
 
 using ProgramLaw = std::function<Vector3d(const driver::DeviceState&)>;
 
-/// What became of a program's forces.
+/// Result of a program's forces.
 struct Program {
-  double error = 0;  // largest difference of sent and asked after 0.5 s, N
-  double most = 0;   // largest force asked, N
-  double swing = 0;  // way of the true tip to and fro in the last 0.2 s, m
+  double error = 0;  // max. difference of sent and requested force after 0.5 s, N
+  double most = 0;   // max. requested force, N
+  double swing = 0;  // range of the true tip in the last 0.2 s, m
   driver::GateCounters gate;
 };
 
-/// Runs a program's law on a simulated arm whose hand goes a path.
+/// Runs a program's law on a simulated arm whose hand follows a path.
 Program run_program(const std::string& arm, const scene::HandRoute& route, double seconds,
                     const ProgramLaw& asked, double damping = -1) {
   auto file = scene::load_arm(arm);
@@ -188,7 +189,7 @@ TEST(RightForces, AProgramsVibrationArrives) {
 }
 
 TEST(RightForces, AProgramsSphereArrives) {
-  // As the first program of OpenHaptics has it: a sphere of 40 mm, 250 N/m, stroked.
+  // As in the first example of OpenHaptics: strokes a sphere of 40 mm, 250 N/m.
   const scene::HandRoute route{{0, {0, 0, 0.06}},  {1, {0, 0, 0.031}},     {2, {0.02, 0, 0.024}},
                                {3, {0, 0, 0.031}}, {4, {-0.02, 0, 0.024}}, {5, {0, 0, 0.06}}};
   const Program run = run_program("vintage_phantom", route, 5, [](const driver::DeviceState& s) {
@@ -200,7 +201,8 @@ TEST(RightForces, AProgramsSphereArrives) {
 }
 
 TEST(RightForces, AProgramsUnstableWallIsCalmed) {
-  // Twice what arm and hand hold: (b + B) / L with one tick and a half of latency.
+  // Twice the stiffness that arm and hand stabilise: (b + B) / L with a latency of one and a half
+  // ticks.
   for (const double damping : {1.0, 3.0}) {
     const double wall = 2 * (0.005 + damping) / 1.5e-3;
     const scene::HandRoute route{

@@ -1,5 +1,5 @@
-// What the gate's rise limit does to the energy of a touch: throws at walls and wedges, with the
-// limit, without it, and with the two that a limit must not be.
+// Effect of the gate's rise limit on the energy of a touch: throws at walls and wedges with the
+// limit, without it, and with two wrong limits.
 
 #include <gtest/gtest.h>
 
@@ -22,12 +22,12 @@ constexpr double kForceMost = 8.5;  // N
 constexpr double kMass = 0.075;     // kg
 constexpr double kRise = 2000;      // N/s, as shipped
 
-/// What stands between a force law and the motors of the throws.
+/// Limiter between the force law and the motors of the throws.
 enum Limiter : std::size_t {
-  kNone,       ///< The arm's limit alone.
-  kLength,     ///< Its rise, but of its length alone: what the gate once did.
+  kNone,       ///< Only the arm's force limit.
+  kLength,     ///< Limit of the rise of the force's length only, as in an earlier gate.
   kGate,       ///< The gate.
-  kSymmetric,  ///< The change of the vector, whatever it is: what a limit must not be.
+  kSymmetric,  ///< Limit of every change of the vector, which a limit must not be.
 };
 
 /// Passes forces through one of the limiters.
@@ -64,14 +64,13 @@ class Between {
   Vector3d last_{0, 0, 0};
 };
 
-/// A body of faces through the origin, `n` being their outward normals: a wall of one, a wedge
-/// of two, a plate of two that look away from each other. Its force is the spring of the face that
-/// is nearest.
+/// A body of faces through the origin with the outward normals `n`: a wall of one, a wedge of two,
+/// a plate of two opposite faces. Its force is the spring of the closest face.
 struct Faces {
   std::array<Vector3d, 2> n;
   std::size_t count = 1;
   double stiffness = 1000;    ///< N/m
-  double half_thickness = 0;  ///< how far each face is from the origin, m
+  double half_thickness = 0;  ///< distance of each face from the origin, m
 
   Vector3d force(const Vector3d& p) const {
     double nearest = -HUGE_VAL;
@@ -90,7 +89,7 @@ struct Faces {
 /// One throw at a body.
 struct Throw {
   Vector3d p{0, 0, 0}, v{0, 0, 0};
-  double phase = 0;    ///< of a tick, until the first sample
+  double phase = 0;    ///< share of a tick until the first sample
   double encoder = 0;  ///< m
 };
 
@@ -108,7 +107,7 @@ Throw throw_at(const Faces& body, double speed, support::Random& random) {
   return thrown;
 }
 
-/// Returns the kinetic energy after the throw over that before it.
+/// Returns the ratio of the kinetic energies after and before the throw.
 double energy_back(const Faces& body, const Throw& thrown, Limiter limiter, double rise_max) {
   device_sim::AxisDynamics axis =
       device_sim::AxisDynamics::make({.mass = kMass, .viscous = 0.005, .coulomb = 0}, {}).value();
@@ -139,7 +138,7 @@ double energy_back(const Faces& body, const Throw& thrown, Limiter limiter, doub
   return Vector3d(s[0].v, s[1].v, s[2].v).squaredNorm() / thrown.v.squaredNorm();
 }
 
-/// What comes back of many throws, per limiter.
+/// Energy ratios of many throws, for each limiter.
 struct Back {
   std::array<double, 4> sum{}, most{};
   int throws = 0, acted = 0;
@@ -154,7 +153,7 @@ struct Back {
   }
 };
 
-/// Throws at the same body from the same place through each limiter.
+/// Throws at the same body from the same position through each limiter.
 void throw_through_all(const Faces& body, const Throw& thrown, double rise_max, Back& back) {
   std::array<double, 4> energy{};
   for (std::size_t i = 0; i < energy.size(); ++i) {
@@ -179,7 +178,7 @@ TEST(RiseLimitEnergy, OneFaceKeepsTheEnergyOfALengthLimit) {
             return energy_back(body, thrown, limiter, kRise);
           };
           ASSERT_NEAR(back(kGate), back(kLength), 1e-12) << stiffness << " " << speed;
-          // Fast enough for every step that the wall makes: no limit is felt.
+          // The limit is above every step of the wall, so no limiter acts.
           if (1.1 * stiffness * speed <= kRise) {
             ASSERT_EQ(back(kGate), back(kNone)) << stiffness << " " << speed;
           }
@@ -218,7 +217,7 @@ TEST(HardCaseRiseLimit, WedgesReturnNoMoreThanWithout) {
       }
     }
   }
-  EXPECT_GT(acted, 100) << "the limit was hardly met: nothing was tested";
+  EXPECT_GT(acted, 100) << "the limit was hardly reached, so nothing was tested";
   support::record_hard_case(10,
                             "wedges and plates at random, rise limit on the vector, 0.05 to 1 m/s",
                             "<= mean energy back over that without it", mean, 1, "1");
@@ -227,7 +226,7 @@ TEST(HardCaseRiseLimit, WedgesReturnNoMoreThanWithout) {
 }
 
 TEST(HardCaseRiseLimit, GuardWedgesThrowBack) {
-  // The guard of the test above.
+  // Guard of the test above.
   support::Random random(5);
   Back back;
   while (back.throws < 1000) {
@@ -237,8 +236,8 @@ TEST(HardCaseRiseLimit, GuardWedgesThrowBack) {
     throw_through_all(body, thrown, 300, back);
   }
   EXPECT_GT(back.sum[kSymmetric], 1.5 * back.sum[kNone]);
-  // A rise limit below stiffness times speed is active, whatever it is; one on the vector no more
-  // than one on the length.
+  // Any rise limit below stiffness times speed adds energy; one on the vector adds no more than one
+  // on the length.
   EXPECT_LE(back.sum[kGate], back.sum[kLength]);
   EXPECT_LE(back.most[kGate], back.most[kLength] * (1 + 1e-9));
   support::record_hard_case(10, "guard: wedges at random, symmetric limit of 300 N/s, 1 m/s",

@@ -20,16 +20,16 @@
 #include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
-// Every scene without a scanned mesh that comes with the program, from the wire up.
+// Every shipped scene without a scanned mesh, through the complete chain.
 
 namespace thimble {
 namespace {
 
 struct SceneRun {
   const char* name;
-  // What the scene felt and where its bodies ended, one number for every build type; see
-  // determinism_test.cpp. A change of the scene, the arm's data or any force shows here: store the
-  // new one only if it was meant.
+  // Hash of the ticks and of the final shapes of bodies, equal for every build type; see
+  // determinism_test.cpp. A change of the scene, the arm's data or any force changes it: store a
+  // new hash only for an intended change.
   std::uint64_t stored;
 };
 
@@ -59,7 +59,7 @@ TEST_P(ShippedScene, CompletesRepeatablyWithoutFaultsOrHeap) {
   for (int time = 0; time < 2; ++time) {
     const auto session = support::open_shipped(GetParam().name);
     ASSERT_TRUE(session);
-    EXPECT_GT(session->scene().description.size(), 40u) << "says what to feel";
+    EXPECT_GT(session->scene().description.size(), 40u) << "the scene needs a description";
     driver::ServoEnd end{};
     EXPECT_EQ(support::heap_calls_of([&] { end = session->run(std::atomic<bool>{false}); }), 0);
     EXPECT_EQ(end, driver::ServoEnd::kDone);
@@ -68,8 +68,8 @@ TEST_P(ShippedScene, CompletesRepeatablyWithoutFaultsOrHeap) {
     EXPECT_GT(session->statistics().force_max(), 0.3);
     EXPECT_LT(session->statistics().force_max(),
               session->scene().arms.front().arm.limits.force_max);
-    // What an ideal texture or field does not do, a loop of 1 kHz with a delay does a little
-    // [PHYSICS 1.5]; felt is what exceeds a millijoule.
+    // An ideal texture or field adds no energy; a loop of 1 kHz with a delay adds a little [PHYSICS
+    // 1.5]. More than a millijoule is perceptible.
     EXPECT_LT(session->statistics().energy_to_hand(), 1e-3);
     const std::uint64_t hash = hash_of_touch(*session);
     if (time == 0) first = hash;
@@ -78,7 +78,7 @@ TEST_P(ShippedScene, CompletesRepeatablyWithoutFaultsOrHeap) {
   }
 }
 
-// A test's name may hold letters, digits and underscores only; so do the names of scenes.
+// A test's name may contain only letters, digits and underscores; so do the names of scenes.
 INSTANTIATE_TEST_SUITE_P(
     ByName, ShippedScene,
     ::testing::Values(
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
         SceneRun{"trampoline", 0x7af5bdbc06ca833}, SceneRun{"water_balloon", 0xd58d0192f31de9f0}),
     [](const auto& scene) { return std::string(scene.param.name); });
 
-TEST(BoxScene, TurnsTheForceInWedgesButNotByTheEntryFace) {
+TEST(BoxScene, OnlyTheRightBoxIsTouchedOnItsSide) {
   const auto session = support::open_shipped("box");
   ASSERT_TRUE(session);
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
@@ -114,11 +114,11 @@ TEST_P(DentedScene, ShowsItsDent) {
   ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
   ASSERT_TRUE(session->records().dents);
   const render::BodyPatch& dent = session->records().dents->deepest();
-  EXPECT_GT(dent.triangle_count, 11) << "6 in place of one and 2 of each neighbour, at least";
-  EXPECT_EQ(dent.share, 1) << "drawn in full";
+  EXPECT_GT(dent.triangle_count, 11) << "at least 6 instead of one, and 2 of each neighbour";
+  EXPECT_EQ(dent.share, 1) << "drawn completely";
   EXPECT_EQ(dent.object, 0);
   EXPECT_GT(session->records().dents->drawn().drawings, 0u);
-  // The bent mesh is as closed as the one it came from.
+  // The deformed mesh is as watertight as the original.
   const auto whole = session->deepest_dent();
   ASSERT_TRUE(whole);
   EXPECT_GT(whole->triangles.size(), session->setup().objects().mesh_W().triangles.size());

@@ -11,7 +11,7 @@
 namespace thimble {
 namespace {
 
-TEST(ServoPath, AsksTheHeapForNothingInTenSecondsOfTouch) {
+TEST(ServoPath, AllocatesNothingInTenSecondsOfContact) {
   THIMBLE_NEEDS_MESHES();
   const auto session = support::open_elephant();
   ASSERT_TRUE(session);
@@ -24,7 +24,7 @@ TEST(ServoPath, AsksTheHeapForNothingInTenSecondsOfTouch) {
 
 class ServoPathOfScene : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(ServoPathOfScene, AsksTheHeapForNothing) {
+TEST_P(ServoPathOfScene, AllocatesNothing) {
   if (GetParam() == "elephant") THIMBLE_NEEDS_MESHES();
   session::SessionOptions options;
   options.mesh_folder = THIMBLE_MESHES;
@@ -43,12 +43,12 @@ INSTANTIATE_TEST_SUITE_P(ByName, ServoPathOfScene,
                          ::testing::ValuesIn(support::scenes_of_one_arm()),
                          [](const auto& scene) { return scene.param; });
 
-TEST(ServoPath, IsWatchedByAGuardThatNoticesOneAllocation) {
+TEST(ServoPath, GuardDetectsOneAllocation) {
   // The negative control: a force law that allocates once, in one tick of many.
   int ticks = 0;
   const auto sloppy = [&](const driver::DeviceState&) noexcept {
     if (++ticks == 50) {
-      int* volatile memory = new int(1);  // volatile: or the compiler leaves the pair out
+      int* volatile memory = new int(1);  // volatile, or the compiler removes the pair
       delete memory;
     }
     return driver::ForceCommand{};

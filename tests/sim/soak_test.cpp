@@ -1,6 +1,6 @@
-// Every shipped scene under a hand that goes anywhere, for long: no fault, no number that is none,
-// no memory that grows, and the same bits again, on however many threads. THIMBLE_LONG: 10^8 ticks
-// in all (THIMBLE_SOAK_TICKS says another number).
+// Every shipped scene for a long time under a hand that moves anywhere: no fault, no NaN, no growth
+// of memory, and bit-identical results on any number of threads. THIMBLE_LONG: 10^8 ticks in total
+// (or THIMBLE_SOAK_TICKS).
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -37,15 +37,15 @@ std::vector<std::string> shipped_scenes() {
   return names;
 }
 
-/// Bytes of the heap that are in use. Not the pages in memory: room that was made before the first
-/// tick, like clay's for the triangles it will split, is counted from the start, not when its pages
+/// Returns the bytes of the heap in use. Resident pages are not counted: memory allocated before
+/// the first tick, such as clay's for later triangles, counts from the start, not when its pages
 /// are first written.
 std::size_t heap_in_use() {
   const struct mallinfo2 heap = mallinfo2();
   return heap.uordblks + heap.hblkhd;
 }
 
-/// What a scene did in its ticks.
+/// Results of a scene's ticks.
 struct Soaked {
   std::uint64_t ticks = 0;
   std::uint64_t hash = 0;
@@ -53,10 +53,10 @@ struct Soaked {
   driver::Fault fault = driver::Fault::kNone;
   bool finite = true;
   bool within_limit = true;
-  std::size_t heap_early = 0, heap_late = 0;  ///< in use after a tenth, and at the end, bytes
+  std::size_t heap_early = 0, heap_late = 0;  ///< heap in use after a tenth, and at the end, bytes
 };
 
-/// Leads the hand of a session to one place after the other, near where its scene is touched.
+/// Moves the hand of a session to a sequence of places near the contacts of its scene.
 class Wanderer {
  public:
   static constexpr std::uint64_t kTicksPerPlace = 300;
@@ -82,7 +82,7 @@ class Wanderer {
   std::vector<Vector3d> places_;
 };
 
-/// Keeps what a scene did.
+/// Stores the results of a scene.
 class Witness {
  public:
   Witness(std::uint64_t ticks, double force_max) : early_(ticks / 10), force_max_(force_max) {}
@@ -113,7 +113,7 @@ class Witness {
 Soaked soak(const std::string& scene, std::uint64_t ticks) {
   session::SessionOptions options;
   options.mesh_folder = THIMBLE_MESHES;
-  options.hand_by_mouse = true;  // waits to be led
+  options.hand_by_mouse = true;  // the hand follows the test's commands
   options.duration = 1;
   auto opened = session::Session::open(
       std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (scene + ".yaml"), options);
@@ -131,7 +131,7 @@ Soaked soak(const std::string& scene, std::uint64_t ticks) {
   return witness.close();
 }
 
-/// Soaks all scenes on so many threads.
+/// Runs all scenes on this number of threads.
 std::vector<Soaked> soak_all(const std::vector<std::string>& scenes, std::uint64_t ticks,
                              unsigned threads) {
   std::vector<Soaked> results(scenes.size());
@@ -167,16 +167,16 @@ std::uint64_t ticks_in_all() {
   return support::long_form() ? 100'000'000 : 140'000;
 }
 
-TEST(Soak, EverySceneOutlivesAHandThatGoesAnywhere) {
-  // What a service thread or the C++ library keeps once; a tick that left behind one byte would be
-  // beyond it.
+TEST(Soak, EverySceneSurvivesARandomHand) {
+  // Memory that a service thread or the C++ library keeps once; one leaked byte per tick would
+  // exceed it.
   constexpr std::size_t kGrowthMax = 8192;  // bytes
   const auto scenes = shipped_scenes();
   ASSERT_GE(scenes.size(), 13U);
   const std::uint64_t ticks = ticks_in_all() / scenes.size();
   const bool is_long = ticks > 100'000;
   const unsigned threads = is_long ? std::max(1U, std::thread::hardware_concurrency()) : 1;
-  if (!watched()) soak_all(scenes, 100, 1);  // what is made once for all runs
+  if (!watched()) soak_all(scenes, 100, 1);  // allocations that happen once for all runs
   const std::size_t heap_before = heap_in_use();
   const auto results = soak_all(scenes, ticks, threads);
   std::uint64_t in_contact = 0, done = 0;
@@ -188,7 +188,7 @@ TEST(Soak, EverySceneOutlivesAHandThatGoesAnywhere) {
     EXPECT_TRUE(one.finite);
     EXPECT_TRUE(one.within_limit);
     EXPECT_EQ(name(one.fault), name(driver::Fault::kNone));
-    if (!watched() && threads == 1) {  // a thread beside it opens another scene meanwhile
+    if (!watched() && threads == 1) {  // another thread opens a scene at the same time
       EXPECT_LE(one.heap_late, one.heap_early + kGrowthMax) << "the heap grows with the ticks";
     }
     covered.add(scenes[i]);
@@ -196,9 +196,9 @@ TEST(Soak, EverySceneOutlivesAHandThatGoesAnywhere) {
     done += one.ticks;
   }
   if (!watched()) {
-    EXPECT_LE(heap_in_use(), heap_before + kGrowthMax) << "scenes leave something behind";
+    EXPECT_LE(heap_in_use(), heap_before + kGrowthMax) << "scenes leak memory";
   }
-  EXPECT_GT(in_contact, done / 20) << "hands that touch nothing say nothing";
+  EXPECT_GT(in_contact, done / 20) << "hands without contact test nothing";
   std::printf(
       "soaked: %llu ticks of %zu scenes on %u threads, %.0f %% in contact, hash %016llx, %.1f kB "
       "of heap\n",
@@ -207,7 +207,7 @@ TEST(Soak, EverySceneOutlivesAHandThatGoesAnywhere) {
       static_cast<unsigned long long>(hash_of(results)), static_cast<double>(heap_in_use()) / 1e3);
 }
 
-TEST(Soak, GivesTheSameBitsOnAnyNumberOfThreads) {
+TEST(Soak, IsBitIdenticalOnAnyNumberOfThreads) {
   const auto scenes = shipped_scenes();
   const std::uint64_t ticks = watched() ? 100 : 2'000;
   const auto alone = soak_all(scenes, ticks, 1);

@@ -1,5 +1,5 @@
-// What `thimble tune` warns of at rest, held to what scenes do: the account that `thimble study
-// trouble` keeps of its random scenes.
+// Warnings of `thimble tune` about oscillations at rest, compared with the behaviour of scenes, as
+// `thimble study trouble` does for its random scenes.
 
 #include <gtest/gtest.h>
 
@@ -32,8 +32,8 @@ namespace {
 const std::filesystem::path kArm =
     std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml";
 
-/// Runs a scene until `time` (s), holds the hand still there for 1.6 s, and returns the force above
-/// 50 Hz in the last quarter of a second, N RMS.
+/// Runs a scene until `time` (s), holds the hand there for 1.6 s, and returns the force above 50 Hz
+/// in the last quarter of a second, N RMS.
 double oscillation_stopped_at(const std::filesystem::path& file, double time) {
   const auto session = session::Session::open(file, {.duration = time + 1.6});
   EXPECT_TRUE(session);
@@ -55,7 +55,7 @@ double oscillation_stopped_at(const std::filesystem::path& file, double time) {
   return std::sqrt(square / (0.25 * rate));
 }
 
-/// Returns what `tune` would warn of for the hand of a scene, all but what the energy stage does.
+/// Returns the warnings of `tune` for the hand of a scene, except those about the energy stage.
 std::vector<std::string> warnings_of(const scene::Scene& scene) {
   std::vector<std::string> warnings;
   const auto trial = try_rests(scene, scene.arms.front().arm.simulated.hand);
@@ -71,7 +71,7 @@ TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
   ASSERT_TRUE(studies::write_small_meshes(folder / "meshes"));
   const studies::RandomSceneLimits limits{
       .arm = *scene::load_arm(kArm), .arm_path = kArm.string(), .mesh_path = "meshes"};
-  // Scenes of the long search in which the tip oscillates, and then any.
+  // Scenes of the long search in which the tip oscillates, followed by random ones.
   std::vector<std::uint64_t> seeds{0x9e0ae1da2e824ea6, 0x12d51};
   const int count = support::long_form() ? 300 : 40;
   for (int i = 0; i < count; ++i) seeds.push_back(77'000 + static_cast<std::uint64_t>(i));
@@ -88,7 +88,7 @@ TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
     bool oscillates = found.limit_cycle > studies::kLimitCycleMost;
     const bool alarm = !warnings_of(*scene).empty();
     if (alarm && !oscillates) {
-      // Where the scene's own rest touches nothing, tune stops the hand on its path.
+      // If the hand touches nothing at the end of its path, tune stops it earlier on the path.
       const auto trial = try_rests(*scene, scene->arms.front().arm.simulated.hand);
       ASSERT_TRUE(trial && trial->worst());
       oscillates = oscillation_stopped_at(file, trial->worst()->time) > studies::kLimitCycleMost;
@@ -106,9 +106,8 @@ TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
     }
   }
   std::printf(
-      "  of %d scenes %d oscillate; %d warned of, %d of them wrongly, %d missed (causes by the "
-      "laws "
-      "alone: %d, %d wrongly)\n",
+      "  of %d scenes %d oscillate; %d warnings, %d of them wrong, %d missed (from the laws only: "
+      "%d warnings, %d wrong)\n",
       ran, oscillate, alarms, wrong, missed, by_rules, rules_wrong);
   EXPECT_GT(ran, count * 3 / 4);
   EXPECT_GT(oscillate, 1);
@@ -122,7 +121,7 @@ TEST(TuneRest, IsSilentOnShippedScenes) {
        std::filesystem::directory_iterator(kArm.parent_path().parent_path() / "scenes")) {
     if (entry.path().extension() != ".yaml") continue;
     const auto scene = scene::load_scene(entry.path());
-    if (!scene) {  // two hands, or a scan that is not there
+    if (!scene) {  // two hands, or a scan that is not installed
       std::printf("  not tried: %s\n", scene.error().message.c_str());
       continue;
     }
@@ -133,7 +132,7 @@ TEST(TuneRest, IsSilentOnShippedScenes) {
   EXPECT_GE(scenes, 14);
 }
 
-// Two faces hold the tip at once, so there is nothing to warn of.
+// Two faces hold the tip at once, so no warning is due.
 TEST(TuneRest, IsSilentInAGroove) {
   const auto folder = support::scratch_folder();
   const double slope = std::atan2(0.017, 0.03), wall = std::hypot(0.017, 0.03);
@@ -163,8 +162,8 @@ TEST(TuneRest, IsSilentInAGroove) {
   }
 }
 
-// Where a path only strokes, the hand is stopped in what it touches.
-TEST(TuneRest, StopsTheHandInWhatItOnlyStrokes) {
+// If a path only strokes an object, the hand is stopped inside it.
+TEST(TuneRest, StopsTheHandInAStrokedObject) {
   const auto folder = support::scratch_folder();
   const auto file = folder / "stroke.yaml";
   std::ofstream(file)
@@ -177,7 +176,7 @@ TEST(TuneRest, StopsTheHandInWhatItOnlyStrokes) {
   ASSERT_TRUE(scene) << scene.error().message;
   const auto trial = try_rests(*scene, scene->arms.front().arm.simulated.hand);
   ASSERT_TRUE(trial) << trial.error().message;
-  ASSERT_EQ(trial->rests.size(), 2u);  // in the air, and on the wall
+  ASSERT_EQ(trial->rests.size(), 2u);  // one in the air, one on the wall
   EXPECT_EQ(trial->rests[0].on, "");
   EXPECT_EQ(trial->rests[1].on, "wall");
   EXPECT_NEAR(trial->rests[1].time, 0.6, 0.1);

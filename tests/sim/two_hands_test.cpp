@@ -22,7 +22,7 @@
 #include "thimble/session/recording.h"
 #include "thimble/session/session.h"
 
-// Several arms in one run, from the wire up: one beam in two hands.
+// Several arms in one run, through the complete chain: one beam in two hands.
 
 namespace thimble {
 namespace {
@@ -47,7 +47,7 @@ std::unique_ptr<session::Session> open_two_hands(
   return std::move(opened).value();
 }
 
-/// Takes away what else than the hands and gravity acts on the beam.
+/// Removes everything that acts on the beam except the hands and gravity.
 void free_the_beam(scene::Scene& scene) {
   render::MotionChoice& motion = *scene.objects[0].body.motion;
   motion.floor.reset();
@@ -104,7 +104,7 @@ TEST(TwoHands, CompleteRepeatablyWithoutFaultsOrHeap) {
       EXPECT_EQ(figures.fault, driver::Fault::kNone);
       EXPECT_EQ(figures.statistics.ticks(), 8000U);
       EXPECT_EQ(figures.current_at_exit, 0);
-      EXPECT_GT(figures.statistics.contact_time(), 7.9) << "it has not slipped out of a hand";
+      EXPECT_GT(figures.statistics.contact_time(), 7.9) << "the beam has not slipped out of a hand";
       EXPECT_GT(figures.statistics.force_max(), 0.5 * kMass * kGravity);
       EXPECT_LT(figures.statistics.force_max(), 4);
     }
@@ -114,7 +114,7 @@ TEST(TwoHands, CompleteRepeatablyWithoutFaultsOrHeap) {
   }
 }
 
-// Lifted evenly, each hand bears its half, and the two forces are each other's mirror image.
+// When the beam is lifted evenly, each hand carries half, and the two forces are mirror images.
 TEST(TwoHands, BearHalfOfTheWeightEach) {
   const auto session = open_two_hands();
   ASSERT_TRUE(session);
@@ -135,7 +135,8 @@ TEST(TwoHands, BearHalfOfTheWeightEach) {
   EXPECT_NEAR(left.y(), -right.y(), 0.05 * half);
 }
 
-// Newton's third law: what the beam gains is what both hands and gravity gave, in every tick.
+// Newton's third law: in every tick the momentum of the beam changes by that from both hands and
+// gravity.
 TEST(TwoHands, KeepTheMomentumAccountOfTheBeam) {
   const auto session = open_two_hands(free_the_beam);
   ASSERT_TRUE(session);
@@ -150,11 +151,11 @@ TEST(TwoHands, KeepTheMomentumAccountOfTheBeam) {
     largest = std::max(largest, momentum.norm());
     turned = std::max(turned, beam(*session).angular_momentum_W().norm());
   }
-  EXPECT_GT(largest, 1e-3) << "kg m/s; an account of nothing says nothing";
+  EXPECT_GT(largest, 1e-3) << "kg m/s; without motion the account tests nothing";
   EXPECT_GT(turned, 1e-6) << "kg m^2/s";
 }
 
-// One hand pulls, the other keeps still: it feels the pull through the beam.
+// One hand pulls and the other is still: it gets the pull through the beam.
 TEST(TwoHands, FeelEachOtherThroughTheBeam) {
   constexpr double kPull = 6e-3;  // m
   const auto pulled_by = [&](double way) {
@@ -176,14 +177,14 @@ TEST(TwoHands, FeelEachOtherThroughTheBeam) {
     return std::pair(left, right);
   };
   const auto [left, right] = pulled_by(kPull);
-  EXPECT_GT(left.y(), 0.2) << "N: it is pulled back";
+  EXPECT_GT(left.y(), 0.2) << "N: the hand is pulled back";
   EXPECT_LT(right.y(), -0.2) << "N: towards the hand that pulls";
   EXPECT_NEAR(left.y(), -right.y(), 0.02 * left.y()) << "the beam is at rest";
   const auto [calm_left, calm_right] = pulled_by(0);
   EXPECT_LT(calm_left.norm() + calm_right.norm(), 0.05);
 }
 
-TEST(TwoHands, FaultTogetherUnlessTheSceneSaysApart) {
+TEST(TwoHands, FaultStopsBothUnlessTheSceneSaysApart) {
   constexpr int kTick = 1600;
   for (const auto rule : {scene::FaultRule::kTogether, scene::FaultRule::kApart}) {
     const bool apart = rule == scene::FaultRule::kApart;
@@ -200,8 +201,8 @@ TEST(TwoHands, FaultTogetherUnlessTheSceneSaysApart) {
     if (!apart) {
       EXPECT_EQ(end, driver::ServoEnd::kFault);
       EXPECT_TRUE(session->device(0).f_sent_W().isZero(0));
-      EXPECT_EQ(session->device(0).fault(), driver::Fault::kOtherArm) << "it says why";
-      EXPECT_EQ(session->step(kGoOn), driver::ServoEnd::kFault) << "it stays over";
+      EXPECT_EQ(session->device(0).fault(), driver::Fault::kOtherArm) << "the reason is reported";
+      EXPECT_EQ(session->step(kGoOn), driver::ServoEnd::kFault) << "the run stays ended";
       EXPECT_EQ(session->figures({}, 0).current_at_exit, 0);
       EXPECT_EQ(session->figures({}, 0).end, driver::ServoEnd::kStopped);
       EXPECT_EQ(session->figures({}, 1).end, driver::ServoEnd::kFault);
@@ -212,18 +213,18 @@ TEST(TwoHands, FaultTogetherUnlessTheSceneSaysApart) {
     for (int tick = 0; tick < 300; ++tick) {
       ASSERT_FALSE(session->step(kGoOn));
       EXPECT_TRUE(session->device(1).f_sent_W().isZero(0));
-      EXPECT_TRUE(force_on_hand(*session, 1).isZero(0)) << "it gives the beam nothing either";
+      EXPECT_TRUE(force_on_hand(*session, 1).isZero(0)) << "the arm exerts no force on the beam";
       most = std::max(most, -session->device(0).f_sent_W().z());
     }
-    EXPECT_GT(most, 0.6 * kMass * kGravity) << "the other hand bears more than its half";
+    EXPECT_GT(most, 0.6 * kMass * kGravity) << "the other hand carries more than half";
     EXPECT_EQ(session->run(kGoOn), driver::ServoEnd::kDone);
     EXPECT_EQ(session->figures({}, 0).fault, driver::Fault::kNone);
     EXPECT_EQ(session->figures({}, 1).fault, driver::Fault::kOverSpeed);
   }
 }
 
-// A fault of the first arm, whose loop comes first in a tick, does the same to the second.
-TEST(TwoHands, LeaveNoForceWhicheverArmFails) {
+// A fault of the first arm, whose loop runs first in a tick, also affects the second.
+TEST(TwoHands, FaultOfTheFirstArmEndsAllForces) {
   const auto session = open_two_hands();
   ASSERT_TRUE(session);
   for (int tick = 0; tick < 1600; ++tick) ASSERT_FALSE(session->step(kGoOn));
@@ -233,8 +234,9 @@ TEST(TwoHands, LeaveNoForceWhicheverArmFails) {
   EXPECT_EQ(session->simulation(1)->currents(), Vector3d::Zero());
 }
 
-// A caller that looks at one arm alone is told, and so is who asks for what one arm alone has.
-/// Runs the scene with a recording of each arm, and reads them; a fault of one may come on the way.
+// Callers that handle one arm only get an error, and so do requests that need a single arm.
+/// Runs the scene with a recording of each arm, and reads the recordings; one arm may have a fault
+/// during the run.
 std::vector<session::Recording> recorded_hands(scene::FaultRule rule, int fault_at) {
   const std::filesystem::path file = support::scratch_folder() / "hands.h5";
   session::SessionOptions options;
@@ -265,8 +267,9 @@ std::vector<session::Recording> recorded_hands(scene::FaultRule rule, int fault_
   return recordings;
 }
 
-// Each arm has a recording of its own; together they are the run, to the bit, faults and all.
-TEST(TwoHands, AreReplayedTogetherToTheBit) {
+// Each arm has its own recording; their common replay is bit-identical to the run, including
+// faults.
+TEST(TwoHands, ReplayOfAllRecordingsIsBitIdentical) {
   for (const int fault_at : {-1, 1600}) {
     SCOPED_TRACE(fault_at);
     const auto recordings = recorded_hands(scene::FaultRule::kApart, fault_at);
@@ -286,7 +289,7 @@ TEST(TwoHands, AreReplayedTogetherToTheBit) {
   }
 }
 
-TEST(TwoHands, AreReplayedOnlyIfAllOfOneRunAreThere) {
+TEST(TwoHands, ReplayNeedsAllRecordingsOfARun) {
   auto recordings = recorded_hands(scene::FaultRule::kTogether, -1);
   ASSERT_EQ(recordings.size(), 2u);
   const auto refusal = [](const std::vector<session::Recording>& given) {
@@ -297,14 +300,14 @@ TEST(TwoHands, AreReplayedOnlyIfAllOfOneRunAreThere) {
             std::string::npos)
       << refusal({recordings[0]});
   EXPECT_NE(refusal({recordings[0], recordings[0]}).find("\"right\""), std::string::npos);
-  EXPECT_EQ(refusal({recordings[1], recordings[0]}), "replayed") << "in any order";
+  EXPECT_EQ(refusal({recordings[1], recordings[0]}), "replayed") << "the order is arbitrary";
   recordings[1].ticks.pop_back();
   EXPECT_NE(refusal(recordings).find("not from one run"), std::string::npos);
-  // One hand alone is not what was felt.
+  // A single recording cannot be replayed.
   EXPECT_FALSE(session::replay(recordings[0]));
 }
 
-TEST(TwoHands, AreRefusedWithASentenceWhereOneArmIsMeant) {
+TEST(TwoHands, CallersForOneArmGetAnError) {
   const auto refusal = [](const session::SessionOptions& options) {
     const auto opened = session::Session::open(kTwoHands, options);
     return opened ? std::string("opened") : opened.error().message;
@@ -328,7 +331,7 @@ TEST(TwoHands, AreRefusedWithASentenceWhereOneArmIsMeant) {
   EXPECT_NE(refusal(other).find("by one arm alone"), std::string::npos) << refusal(other);
 }
 
-TEST(TwoHands, OneExistingRecordingLeavesAllFilesAsTheyWere) {
+TEST(TwoHands, ExistingRecordingLeavesAllFilesUnchanged) {
   const std::filesystem::path file = support::scratch_folder() / "kept.h5";
   session::SessionOptions options;
   options.several_arms = true;

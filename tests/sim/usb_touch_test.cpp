@@ -1,5 +1,5 @@
-// The whole way of an arm on USB in simulated time: hand, mechanics, board, USB/IP, driver, force.
-// tests/usb does the same through a real kernel.
+// The complete chain of an arm on USB in simulated time: hand, mechanics, board, USB/IP, driver,
+// force. tests/usb does the same through a real kernel.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -90,7 +90,7 @@ class UsbTouch : public testing::TestWithParam<usb::ShelfEntry> {
     }
     return false;
   }
-  /// Finds what the motors must be asked for: tau = J^T f of this tick, in the wire's unit.
+  /// Returns the expected request to the motors: tau = J^T f of this tick, in the wire's unit.
   Eigen::Vector3d motor_values() const {
     const auto protocol = virtual_arm_.protocol();
     driver::ArmReading reading;
@@ -115,7 +115,7 @@ class UsbTouch : public testing::TestWithParam<usb::ShelfEntry> {
   double force_ = 0, force_max_ = 0;
 };
 
-TEST_P(UsbTouch, BringsEveryPositionAndForceOverWithinAQuantum) {
+TEST_P(UsbTouch, TransfersPositionAndForceWithinAQuantum) {
   const int ticks = support::long_form() ? 10'000 : 3'000;
   int in_contact = 0, fresh = 0;
   Eigen::Vector3d wanted(0, 0, 0);
@@ -125,11 +125,11 @@ TEST_P(UsbTouch, BringsEveryPositionAndForceOverWithinAQuantum) {
     tick();
     const usb::ArmTruth truth = arm_->truth();
     if (i > 0) {
-      // The message of the tick before has arrived in this frame.
+      // The message of the previous tick has arrived in this frame.
       for (int k = 0; k < 3; ++k) {
         ASSERT_LE(std::abs(truth.motor_values[static_cast<std::size_t>(k)] - wanted[k]), 0.5001);
       }
-      // Encoders were sampled, read, answered, and the motors heard of it two frames later at most.
+      // Encoders were sampled, read and answered, and the motors changed at most two frames later.
       if (was_fresh) {
         ASSERT_LE(truth.message_ns - sampled_ns, 2 * kTick_ns) << i;
       }
@@ -158,7 +158,8 @@ TEST_P(UsbTouch, KeepsTheForceWithinItsLimitUnderEveryFault) {
     kinds.push_back(static_cast<usb::FaultKind>(kind));
   }
   std::erase(kinds, usb::FaultKind::kUnplug);
-  // Bits that flip on the way out may preset the counters of a board or unhome a Falcon for good.
+  // Flipped bits in messages to the arm may set the counters of a board, or permanently unhome a
+  // Falcon.
   std::erase(kinds, usb::FaultKind::kBitErrors);
   kinds.push_back(usb::FaultKind::kBitErrors);
   for (const usb::FaultKind fault : kinds) {
@@ -167,15 +168,15 @@ TEST_P(UsbTouch, KeepsTheForceWithinItsLimitUnderEveryFault) {
       SCOPED_TRACE(line);
       ASSERT_TRUE(touch_until_contact());
       faulty_->order(*usb::parse_fault(line));
-      // Behind a converter there is room for more bytes, which are no message and are skipped.
+      // A converter passes additional bytes, which are no message and are skipped.
       const bool babbles = fault == usb::FaultKind::kLong && !virtual_arm_.is_falcon();
       const bool stops =
           std::string_view(way) == " in"
               ? fault == usb::FaultKind::kStall || fault == usb::FaultKind::kShort || babbles ||
                     fault == usb::FaultKind::kSilence || fault == usb::FaultKind::kLost ||
-                    // Its reports are numbered, so that an old one is known.
+                    // Its reports have numbers, so an old report is detected.
                     (fault == usb::FaultKind::kStale && virtual_arm_.name == "woodenhaptics")
-              // An arm that answers only is silent when its messages are lost.
+              // An arm that sends only when asked is silent when messages to it are lost.
               : fault == usb::FaultKind::kLost && virtual_arm_.answers();
       const bool deaf = support::is_deaf(!virtual_arm_.is_falcon(), virtual_arm_.answers(),
                                          std::string(usb::name(fault)) + way);
@@ -183,7 +184,7 @@ TEST_P(UsbTouch, KeepsTheForceWithinItsLimitUnderEveryFault) {
         tick();
         ASSERT_TRUE(std::isfinite(force_));
         ASSERT_LE(force_, usb_test::check_settings().limits.force_max + 1e-9);
-        // 20 ms of silence and the tick in which it is noticed.
+        // 20 ms of silence and the tick that detects it.
         if (stops && i > 22 && i < 100) {
           ASSERT_TRUE(force_ == 0 || (deaf && !device_->zero_assured())) << i << " " << force_;
         }

@@ -1,5 +1,5 @@
-// No shipped scene is taken for a broken arm, whoever holds the grip; every shipped arm with
-// reversed motors is.
+// No shipped scene is mistaken for a broken arm, with any hand; every shipped arm with reversed
+// motors is detected.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -24,7 +24,7 @@ struct Grip {
 
 class WatchedScene : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(WatchedScene, IsTakenForABrokenArmWithNoHand) {
+TEST_P(WatchedScene, NoHandLooksLikeABrokenArm) {
   for (const Grip& grip :
        {Grip{"low-impedance", 0.01, 100, 1, 5e-5}, Grip{"high-impedance", 0.05, 1000, 10, 5e-5},
         Grip{"stiff and without damping", 0.025, 1000, 1, 0}, Grip{"heavy", 0.1, 300, 3, 0}}) {
@@ -44,8 +44,9 @@ TEST_P(WatchedScene, IsTakenForABrokenArmWithNoHand) {
     const driver::Fault fault = session.device().fault();
     EXPECT_TRUE(fault == driver::Fault::kNone || fault == driver::Fault::kOverSpeed)
         << grip.name << ": " << driver::name(fault);
-    EXPECT_GT(session.statistics().force_max(), 0.05) << "it was a touch";
-    EXPECT_EQ(session.device().heat().lowered(), 0u) << "heat acts in no shipped scene";
+    EXPECT_GT(session.statistics().force_max(), 0.05) << "the scene was touched";
+    EXPECT_EQ(session.device().heat().lowered(), 0u)
+        << "heat must not limit the force in a shipped scene";
     EXPECT_GT(session.device().heat().heat_most(), 0);
   }
 }
@@ -57,7 +58,8 @@ INSTANTIATE_TEST_SUITE_P(ByName, WatchedScene,
                                            "water_balloon"),
                          [](const auto& scene) { return std::string(scene.param); });
 
-/// A plate of 800 N/m under a hand that presses at 0.1 m/s, with an arm file and its own motors.
+/// A plate of 800 N/m under a hand that presses at 0.1 m/s, with an arm file and separately set
+/// motors.
 class PressedPlate : public ::testing::TestWithParam<const char*> {
  protected:
   static std::unique_ptr<session::Session> open(bool reversed) {

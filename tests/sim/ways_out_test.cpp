@@ -9,8 +9,8 @@
 #include "thimble/driver/servo_loop.h"
 #include "thimble/driver/wire_link.h"
 
-// Every way out ends with the motors off, seen on the far side of the wire: in the simulated arm's
-// currents, not in what the driver believes.
+// Every exit ends with the motors off. The tests check the currents of the simulated arm, not the
+// driver's state.
 
 namespace thimble {
 namespace {
@@ -81,7 +81,7 @@ class WaysOut : public ::testing::Test {
   double current_before_ = 0;
 };
 
-TEST_F(WaysOut, TheEndOfTheTicksTurnsTheMotorsOffAtOnce) {
+TEST_F(WaysOut, EndOfRunTurnsTheMotorsOffAtOnce) {
   EXPECT_EQ(push(1000, [](auto&) {}), driver::ServoEnd::kDone);
   EXPECT_GT(current_before_, 0.1);
   let_pass(0);
@@ -96,7 +96,7 @@ TEST_F(WaysOut, TheStopFlagTurnsTheMotorsOffWithinOneTick) {
   EXPECT_EQ(current(), 0);
 }
 
-TEST_F(WaysOut, AForceThatIsNotANumberTurnsTheMotorsOffInTheSameTick) {
+TEST_F(WaysOut, NaNForceTurnsTheMotorsOffInTheSameTick) {
   EXPECT_EQ(push(0, [](driver::ForceCommand& command) { command.f_T_W.y() = NAN; }),
             driver::ServoEnd::kFault);
   EXPECT_GT(current_before_, 0.1);
@@ -116,7 +116,7 @@ TEST_F(WaysOut, AnExceptionInTheApplicationTurnsTheMotorsOff) {
     }
     let_pass(0);
     EXPECT_GT(current(), 0.1);
-    throw std::runtime_error("the application's own trouble");
+    throw std::runtime_error("exception of the application");
   } catch (const std::runtime_error&) {
   }
   let_pass(0);
@@ -126,7 +126,7 @@ TEST_F(WaysOut, AnExceptionInTheApplicationTurnsTheMotorsOff) {
 TEST_F(WaysOut, CablePullIsReportedAndMotorsStopIn100ms) {
   EXPECT_EQ(push(0, [this](auto&) { transport_->unplug(); }), driver::ServoEnd::kFault);
   EXPECT_EQ(device_->fault(), driver::Fault::kTransportLost);
-  // The last message came in tick 499; nothing the host does can reach the motors now.
+  // The last message came in tick 499; the host cannot reach the motors any more.
   EXPECT_GT(current(), 0.1);
   arm_->advance_to((499 + 100) * kPeriod_ns - 1);
   EXPECT_GT(current(), 0.1);
@@ -135,8 +135,8 @@ TEST_F(WaysOut, CablePullIsReportedAndMotorsStopIn100ms) {
   EXPECT_EQ(arm_->firmware().counters().watchdog_fired, 1u);
 }
 
-TEST_F(WaysOut, AHostThatDiesIsTheArmsWatchdogsBusiness) {
-  // What SIGKILL looks like from the arm: no more messages, and no farewell.
+TEST_F(WaysOut, WatchdogStopsMotorsIfTheHostDies) {
+  // From the arm's side, SIGKILL means no more messages, and no final zero.
   push(499, [](auto&) {});
   ASSERT_TRUE(device_->activate());
   for (int k = 0; k < 400; ++k) {
@@ -150,7 +150,7 @@ TEST_F(WaysOut, AHostThatDiesIsTheArmsWatchdogsBusiness) {
   EXPECT_EQ(current(), 0);
 }
 
-TEST_F(WaysOut, ALoopThatStoodStillFindsItsForceOffAndNamed) {
+TEST_F(WaysOut, StalledLoopIsAFaultWithoutForce) {
   EXPECT_EQ(push(0, [this](auto&) { clock_.sleep_until_ns(clock_.now_ns() + 150'000'000); }),
             driver::ServoEnd::kFault);
   EXPECT_EQ(device_->fault(), driver::Fault::kLoopStalled);

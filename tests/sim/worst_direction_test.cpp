@@ -17,8 +17,8 @@
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/scene_file.h"
 
-// The rule for three dimensions [PHYSICS 9] against simulation on the real kinematics, at poses
-// all over the workspace.
+// The rule for three dimensions [PHYSICS 9] compared with simulation on the real kinematics, at
+// poses over the whole workspace.
 
 namespace thimble::stability {
 namespace {
@@ -36,15 +36,15 @@ Vector3d joint_steps(const scene::ArmFile& arm) {
   return {arm.model.step(0), arm.model.step(1), arm.model.step(2)};
 }
 
-/// Finds the largest 2 c / K at which somebody who steps from `p_W` along `n_W` across one edge of
-/// each encoder and back gains energy, m: the step that the law must know of. The arm reads joint
-/// angles rounded down, and the wall answers where it reads the tip.
+/// Returns the largest 2 c / K, m, at which an adversary gains energy who steps from `p_W` along
+/// `n_W` across one edge of each encoder and back. It is the step size to use in the law. The arm
+/// reads joint angles rounded down, and the wall responds at the measured tip.
 double adversary_step(const scene::ArmFile& arm, const Vector3d& p_W, const Vector3d& n_W) {
   const auto q = scene::joint_angles_at(arm, p_W);
   const auto J = scene::jacobian_at(arm, p_W);
   if (!q || !J) return 0;
-  // A short step along n turns each joint one way; each encoder stands just before the edge that it
-  // meets on that way.
+  // A short step along n turns each joint in one direction; each encoder is just before its edge in
+  // that direction.
   const Vector3d turned = J->inverse() * (arm.R_WB.transpose() * n_W);
   Vector3d q_read = *q, q_next = *q;
   for (int k = 0; k < 3; ++k) {
@@ -52,7 +52,7 @@ double adversary_step(const scene::ArmFile& arm, const Vector3d& p_W, const Vect
   }
   const auto& geometry = std::get<driver::SerialArm>(arm.model.geometry);
   const Vector3d jump_W = arm.R_WB * (geometry.forward(q_next) - geometry.forward(q_read));
-  // He gains K (jump . n) d and pays 2 c d (|n_x| + |n_y| + |n_z|) in the base's axes.
+  // The gain is K (jump . n) d, the loss 2 c d (|n_x| + |n_y| + |n_z|) in the base's axes.
   return jump_W.dot(n_W) / (arm.R_WB.transpose() * n_W).cwiseAbs().sum();
 }
 
@@ -91,8 +91,8 @@ TEST(HardCaseEncoderAdversary, RuleBoundsStepsIn3D) {
   }
 }
 
-/// Finds the spectral radius of a spring of `stiffness` at the tip of an arm with inertia and
-/// friction at its joints: the exact map of each joint, torques held from sample to sample.
+/// Returns the spectral radius of a spring of `stiffness` at the tip of an arm with inertia and
+/// friction at its joints, by the exact map of each joint with torques held from sample to sample.
 double joint_growth(const Matrix3d& J, const Vector3d& mass, const Vector3d& damping,
                     double stiffness, double period) {
   const Matrix3d K = stiffness * J.transpose() * J;
@@ -117,7 +117,7 @@ TEST(HardCaseStiffestWall, IsStableInThreeDimensions) {
   int poses = 0;
   for (const char* const name : {"vintage_phantom", "woodenhaptics"}) {
     const scene::ArmFile arm = shipped(name);
-    // Inertia and friction at the joints as different as a factor of ten.
+    // Inertia and friction of the joints differ by up to a factor of ten.
     for (const Vector3d& mass : {Vector3d(1e-3, 1e-3, 1e-3), Vector3d(3e-3, 1e-3, 5e-4)}) {
       for (const Vector3d& damping : {Vector3d(4e-3, 4e-3, 4e-3), Vector3d(1e-3, 3e-3, 1e-2)}) {
         for (const Vector3d& p_W : scene::points_of_workspace(arm, 4)) {
@@ -152,7 +152,7 @@ TEST(WorstDirection, SingularPoseHasNoLimitsToOffer) {
   EXPECT_EQ(scene::tip_limits(J, Matrix3d::Identity(), Matrix3d::Identity(), {1, 1, 1}).damping, 0);
 }
 
-TEST(Tuning, FindsByLawWhatTheWholeWaySimulates) {
+TEST(Tuning, LawMatchesTheFullSimulation) {
   const auto file = support::scratch_folder() / "wall.yaml";
   std::ofstream(file)
       << "name: wall\narm: " << THIMBLE_SOURCE_DIR

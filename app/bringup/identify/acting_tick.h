@@ -19,8 +19,8 @@ struct ActingTick {
     part = ticks - static_cast<double>(whole);
   }
 
-  /// Returns a quantity of ticks, `of(tick)`, at the time when the torque requested at tick `k`
-  /// acts.
+  /// Returns the quantity `of(tick)`, interpolated at the time when the torque requested at tick
+  /// `k` acts.
   template <class Of>
   Eigen::Vector3d then(std::size_t k, const Of& of) const {
     return (1 - part) * of(k + whole) + part * of(k + whole + 1);

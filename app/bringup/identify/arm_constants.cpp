@@ -9,8 +9,9 @@
 namespace thimble::bringup {
 namespace {
 
-constexpr int kSeen = 8;    // constants per mass: all but the stiffness
-constexpr int kWanted = 9;  // mass, three gains, viscous, coulomb, three of the weight
+constexpr int kSeen = 8;  // number of measured constants per mass: all but the stiffness
+// Number of unknowns: mass, three gains, viscous, Coulomb, three components of the weight
+constexpr int kWanted = 9;
 
 using Seen = Eigen::Matrix<double, kSeen, 1>;
 using Wanted = Eigen::Matrix<double, kWanted, 1>;
@@ -73,10 +74,9 @@ driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vec
                                            double added_mass) {
   for (int i = 0; i < 3; ++i) {
     if (bare.theta[i] > 0) continue;
-    return driver::Error{
-        "Joint " + std::to_string(i + 1) +
-        " does not follow its motor: what was recorded has another cause, such as a "
-        "hand. Let go of the grip, and run `thimble feel-check`."};
+    return driver::Error{"Joint " + std::to_string(i + 1) +
+                         " does not follow its motor: something else moved it, such as a hand. Let "
+                         "go of the grip and run `thimble feel-check`."};
   }
   ArmConstants found = by_declared_torque(bare, down_B);
   found.delay = bare.delay;
@@ -86,8 +86,8 @@ driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vec
   for (int i = 0; i < 3; ++i) ratio += bare.theta[i] / loaded->theta[i] / 3;
   if (!(ratio > 1.02)) {
     return driver::Error{
-        "The tip moved no slower with the known mass than without it: fix it to the tip, or take a "
-        "heavier one (about what the tip itself weighs)."};
+        "The known mass did not slow the tip down. Fix it to the tip, or use a heavier one (about "
+        "as heavy as the tip itself)."};
   }
   x[0] = added_mass / (ratio - 1);
   x.tail<kSeen>() = x[0] * bare.theta.head<kSeen>();
@@ -110,7 +110,7 @@ driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vec
     add(*loaded, added_mass);
     x += normal.ldlt().solve(right);
   }
-  if (!(x[0] > 0)) return driver::Error{"The two motions fit no arm with a mass above zero."};
+  if (!(x[0] > 0)) return driver::Error{"The two motions do not fit an arm with positive mass."};
   const Eigen::Matrix<double, kWanted, kWanted> cov =
       normal.ldlt().solve(Eigen::Matrix<double, kWanted, kWanted>::Identity());
   found = constants_of(x, cov, down_B);

@@ -13,9 +13,11 @@ struct CableConstants {
   Estimate inertia;    ///< Inertia of motor and pulley, kg m^2 at the joint.
   Estimate stiffness;  ///< Stiffness of the cable, N m/rad at the joint.
   Estimate damping;    ///< N m s/rad
-  Estimate play;       ///< Whole width of the backlash, rad at the joint; 0 if none was seen.
-  Estimate viscous;  ///< Viscous friction of the motor's side, N m s/rad at the joint; 0 likewise.
-  Estimate coulomb;  ///< Dry friction of the motor's side, N m at the joint; 0 likewise.
+  Estimate play;       ///< Whole width of the backlash, rad at the joint; 0 if none was detected.
+  Estimate viscous;    ///< Viscous friction of the motor's side, N m s/rad at the joint; 0 if none
+                       ///< was detected.
+  /// Dry friction of the motor's side, N m at the joint; 0 if none was detected.
+  Estimate coulomb;
   Estimate antiresonance;  ///< Frequency of the link on its cable with the motor held, Hz.
   Estimate resonance;      ///< Frequency of motor and link against each other, Hz.
 
@@ -36,12 +38,13 @@ struct LinkConstants {
 
 /// Constants of an arm for its file, with their intervals.
 struct ArmConstants {
-  Estimate mass;                 ///< Mass at the tip, kg.
-  Estimate viscous;              ///< N s/m
-  Estimate coulomb;              ///< Dry friction, N per axis.
-  Estimate weight;               ///< Weight at the tip, N.
-  std::array<Estimate, 3> gain;  ///< True torque over that of the arm file, joint by joint.
-  Estimate delay;                ///< Delay from force to seen motion, s.
+  Estimate mass;     ///< Mass at the tip, kg.
+  Estimate viscous;  ///< N s/m
+  Estimate coulomb;  ///< Dry friction, N per axis.
+  Estimate weight;   ///< Weight at the tip, N.
+  /// Ratio of the true torque to that of the arm file for each joint.
+  std::array<Estimate, 3> gain;
+  Estimate delay;  ///< Delay from the force to the motion that the host sees, s.
   /// The scale of masses and forces was measured with a known mass. If not, the gains' geometric
   /// mean was assumed to be 1, and all constants but the delay are relative to that.
   bool absolute = false;

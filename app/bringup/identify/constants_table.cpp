@@ -189,8 +189,8 @@ std::string rubs_most_text(const Identified& identified) {
   const double at_tip = most / std::sqrt(identified.lines.JTJ(joint, joint));
   if (!(most > kFarAbove * by[1].first && at_tip > identified.constants.coulomb.value)) return "";
   return fmt::format(
-      " Joint {} rubs far more than the others and than the tip: look at its cable, bearing and "
-      "motor.",
+      " Joint {} has far more friction than the others and than the tip. Check its cable, bearing "
+      "and motor.",
       joint + 1);
 }
 
@@ -246,20 +246,20 @@ std::string fit_text(const Identified& identified) {
   const PerMass& fit = identified.bare;
   if (identified.play.understood()) {
     const PlayFit& play = identified.play;
-    const char* what = play.seen && play.friction.seen ? " with play and friction of the motors"
-                       : play.seen                     ? " with play"
+    const char* what = play.seen && play.friction.seen ? " with backlash and friction of the motors"
+                       : play.seen                     ? " with backlash"
                        : play.friction.seen            ? " with friction of the motors"
                                                        : "";
     std::string text = fmt::format(
-        "Fitted{} to {} pieces of motion; what is left of the angles is {:.2f} times what the "
-        "encoders' steps leave",
+        "Fitted{} to {} segments of motion; the residual of the angles is {:.2f} times the noise "
+        "of the encoder steps",
         what, fit.windows, std::sqrt(play.best().misfit));
-    if (play.told()) text += fmt::format(", without {:.1f} times", std::sqrt(play.plain.misfit));
+    if (play.told()) text += fmt::format(" ({:.1f} times without)", std::sqrt(play.plain.misfit));
     return text + "." + rubs_most_text(identified);
   }
   return fmt::format(
-      "Fitted to {} pieces of motion ({} left out, in which an axis stood); {:.3f} % of the "
-      "acceleration is explained, what is left is {:.1f} times the encoders' steps.",
+      "Fitted to {} segments of motion ({} omitted because an axis was at rest). The fit explains "
+      "{:.3f} % of the acceleration; the residual is {:.1f} times the noise of the encoder steps.",
       fit.windows, fit.left_out, 100 * fit.explained, fit.residual / fit.noise);
 }
 

@@ -7,7 +7,8 @@
 namespace thimble::bringup {
 namespace {
 
-constexpr int kSeenLeast = 3;  // differences of one size: fewer may be misread counts
+// Min. number of differences of one size; fewer may be misread counts
+constexpr int kSeenLeast = 3;
 constexpr std::size_t kReportsLeast = 100;
 // If none of n reports changes, the probability of a change is below 3/n in 19 of 20 rests: the
 // rule of three [M Hanley and Lippman-Hand 1983].

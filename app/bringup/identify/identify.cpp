@@ -51,8 +51,8 @@ void look_at_intervals(Identified& found) {
   // Written so that NaN is too wide.
   if (most < kUnknownMost) return;
   found.against.push_back(fmt::format(
-      "The tip moved too little beside its dry friction to tell masses and forces better than to "
-      "{:.0f} %. Take more time (--seconds), or a heavier known mass.",
+      "The tip moved too little compared with its dry friction; masses and forces are known only "
+      "to {:.0f} %. Record for longer (--seconds), or use a heavier known mass.",
       100 * most));
 }
 
@@ -98,7 +98,7 @@ bool take_freed(const ArmMotion& freed, const PerMass& better, double left, ArmM
 driver::Result<void> look_for_waves(const scene::ArmFile& file, ArmMotion& motion, PerMass& fit,
                                     Identified& found) {
   if (found.lines.stretches) {
-    found.waves.not_done = "not looked for behind cables that stretch.";
+    found.waves.not_done = "not searched because the cables stretch.";
     return {};
   }
   const auto held = fit_motion(motion, true);
@@ -117,8 +117,7 @@ driver::Result<void> look_for_waves(const scene::ArmFile& file, ArmMotion& motio
   const auto better = fit_motion(freed, false);
   if (!better) return better.error();
   if (!take_freed(freed, *better, waves->left, motion, fit, found)) {
-    found.waves.not_done =
-        "not told, for something else makes the fit bad, which looks a little like them.";
+    found.waves.not_done = "not reported because another effect spoils the fit and looks similar.";
     return {};
   }
   found.waves = std::move(waves).value();
@@ -213,8 +212,8 @@ void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstant
 void say_sticks(Identified& found, int joint, const Estimate& coulomb) {
   found.against.insert(
       found.against.begin(),
-      fmt::format("Joint {} sticks: {:.2g} +- {:.1g} N m of dry friction are its own, beside "
-                  "what all axes of the tip have. Its cable, bearing or motor rubs.",
+      fmt::format("Joint {} sticks: it has {:.2g} +- {:.1g} N m of dry friction in addition to "
+                  "that of the tip. Check its cable, bearing and motor.",
                   joint + 1, coulomb.value, coulomb.plus_minus));
 }
 
@@ -246,19 +245,18 @@ void look_closer(Identified& found, bool held) {
     if (!one.seen) continue;
     found.against.insert(
         found.against.begin(),
-        fmt::format("Motor {} gives no more than {:.3g} +- {:.1g} N m at the joint, and was asked "
-                    "for up to {:.3g}: its amplifier saturates, or current_max of the arm file is "
-                    "more than it gives.",
-                    i + 1, one.most.value, one.most.plus_minus, one.asked));
+        fmt::format(
+            "Motor {} gives at most {:.3g} +- {:.1g} N m at the joint, but up to {:.3g} N m was "
+            "requested. Its amplifier saturates, or current_max in the arm file is too high.",
+            i + 1, one.most.value, one.most.plus_minus, one.asked));
   }
 }
 
 std::string like_play_text(const PlayFit& play) {
   return fmt::format(
-      "The motors move as if there were play in the cables, but with play the arm is not "
-      "understood "
-      "either (chi^2 {:.1f} per degree of freedom, {:.0f} without). Friction that changes, slack "
-      "that changes, or a hand do that.",
+      "The motors move as if the cables had backlash, but a model with backlash does not fit "
+      "either (chi^2 {:.1f} per degree of freedom, {:.0f} without). Possible causes: friction that "
+      "varies, slack that varies, or a hand.",
       play.with.misfit, play.without.misfit);
 }
 
@@ -279,12 +277,11 @@ class LateCounter {
 driver::Result<void> check_asked(const scene::ArmFile& file, const IdentifyOptions& options) {
   if (file.is<driver::ToldArm>()) {
     return driver::Error{
-        "Identifying needs an arm whose motors turn its joints by currents (PHANTOM, "
-        "WoodenHaptics, Polhem, Falcon). What an arm behind its vendor's software does with a "
-        "force is not told."};
+        "Only arms whose joint motors are controlled by current can be identified (PHANTOM, "
+        "WoodenHaptics, Polhem, Falcon). Vendor-driven arms do not report their currents."};
   }
   if (!(options.seconds >= 10 && options.seconds <= 600)) {
-    return driver::Error{"Each motion takes from 10 to 600 s."};
+    return driver::Error{"The duration of a motion must be 10 to 600 s."};
   }
   return check_forces(file, options);
 }
@@ -480,9 +477,9 @@ class Identification {
     }
     if (loaded || !(cables_blamed_ > kCablesBlamed)) return;
     found_.against.push_back(
-        fmt::format("Above {:g} Hz the arm does not move like a rigid one; with a mass behind each "
-                    "cable it is understood better (by {:.0f} of the Bayesian information). Its "
-                    "cables stretch, which were not looked for.",
+        fmt::format("Above {:g} Hz the arm does not move like a rigid arm; a model with a mass "
+                    "behind each cable fits better (Bayesian information criterion lower by "
+                    "{:.0f}). Its cables stretch, but cables were not searched.",
                     LineForces::kLowest, cables_blamed_));
   }
 
@@ -499,8 +496,8 @@ class Identification {
     }
     if (found_.constants.misfit > kMisfitMost) {
       found_.against.push_back(fmt::format(
-          "The two motions are not those of one arm with {:g} kg on it (chi^2 {:.0f} per degree of "
-          "freedom): weigh the mass, and fix it so that it does not swing.",
+          "The two motions do not fit one arm with an added mass of {:g} kg (chi^2 {:.0f} per "
+          "degree of freedom). Weigh the mass, and fix it so that it does not swing.",
           options_.known_mass, found_.constants.misfit));
     }
     found_.constants.links_sought = found_.over.fit.has_value();

@@ -44,7 +44,7 @@ struct IdentifyOptions {
   /// Number of poses of the workspace to which the arm is led after the motion with its bare tip:
   /// three to nine; 0: none. They show the inertia of its links. They add to the time.
   int places = 0;
-  double place_seconds = 5;  ///< Duration of the motion about each of them, s.
+  double place_seconds = 5;  ///< Duration of the motion about each of these poses, s.
   std::uint64_t seed = 1;    ///< Seed of the excitation's phases.
   /// Called with each tick of the motion with the bare tip, for a recording; may be empty.
   std::function<void(const driver::TickRecord&)> watch{};
@@ -54,9 +54,9 @@ struct IdentifyOptions {
 struct Identified {
   ArmConstants constants;
   PerMass bare;                   ///< Fit of the motion without the known mass.
-  std::optional<PerMass> loaded;  ///< Fit of the motion with it, if there was one.
+  std::optional<PerMass> loaded;  ///< Fit of the motion with the known mass, if there was one.
   CableFit lines;                 ///< Result of the lines of the motion without it about cables.
-  LineSpectrum spectrum;          ///< These lines.
+  LineSpectrum spectrum;          ///< The lines themselves.
   /// Backlash of elastic cables and friction of their motors. If some is seen, `lines` and `bare`
   /// come from this fit.
   PlayFit play;

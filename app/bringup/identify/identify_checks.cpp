@@ -21,8 +21,8 @@ constexpr double kCableUnexplainedMost = 0.05;
 constexpr double kSpringLeast = 10;  // N/m
 // Max. share of the pieces of motion that may be omitted because an axis stood still.
 constexpr double kLeftOutMost = 0.75;
-constexpr double kForceLeast = 0.2;   // N [chosen: twice the dry friction of the arms that we know]
-constexpr double kCarriedMost = 0.6;  // of the max. force, to carry a known mass
+constexpr double kForceLeast = 0.2;      // N [chosen: twice the dry friction of the supported arms]
+constexpr double kCarriedMost = 0.6;     // of the max. force, to carry a known mass
 constexpr double kKnownMassMost = 0.06;  // kg [chosen: no grip should be heavier than its arm]
 
 }  // namespace
@@ -37,58 +37,56 @@ std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held,
                                         bool stretches) {
   std::vector<std::string> against;
   if (is_held(held, mass)) {
-    against.push_back(fmt::format(
-        "Something holds the tip like a spring of {:.0f} N/m: let go of the grip, and keep cables "
-        "off the arm.",
-        held.theta[PerMass::kStiffness] * mass));
+    against.push_back(
+        fmt::format("Something holds the tip like a spring of {:.0f} N/m. Let go of the grip, and "
+                    "keep cables off the arm.",
+                    held.theta[PerMass::kStiffness] * mass));
   }
   const double times = fit.residual / fit.noise;
   const double unexplained = std::sqrt(std::max(0.0, 1 - fit.explained));
   if (times > (stretches ? kCableResidualMost : kResidualMost) &&
       unexplained > (stretches ? kCableUnexplainedMost : kUnexplainedMost)) {
     against.push_back(fmt::format(
-        "The motion is not that of a rigid arm with dry and viscous friction: the fit leaves "
-        "{:.1f} % of the acceleration, {:.1f} times what the encoders' steps do. Cables that "
-        "stretch, play, a joint that sticks, a hand, or missed edges do that.",
+        "The motion does not fit a rigid arm with dry and viscous friction: the residual is {:.1f} "
+        "% of the acceleration, {:.1f} times the noise of the encoder steps. Possible causes: "
+        "cables that stretch, backlash, a joint that sticks, a hand, or missed encoder edges.",
         100 * unexplained, times));
   }
   const double all = static_cast<double>(fit.windows + fit.left_out);
   if (static_cast<double>(fit.left_out) > kLeftOutMost * all) {
-    against.push_back(fmt::format(
-        "The tip stood still for {:.0f} % of the motion: its friction is too high for the force "
-        "that is allowed. Allow more by --force-most.",
-        100 * static_cast<double>(fit.left_out) / all));
+    against.push_back(
+        fmt::format("The tip was at rest for {:.0f} % of the motion: its friction is too high for "
+                    "the allowed force. Allow more with --force-most.",
+                    100 * static_cast<double>(fit.left_out) / all));
   }
   return against;
 }
 
 std::string late_ticks_text(const LateTicks& late) {
   return fmt::format(
-      "The computer was late in {} of {} ticks, by up to {:.1f} ms, so that forces stood for "
-      "longer "
-      "than was reckoned. Such a motion says nothing about the arm. Give the loop real-time "
-      "priority (`thimble doctor`), close other programs, and repeat it.",
+      "The computer was late in {} of {} ticks, by up to {:.1f} ms, so forces acted for longer "
+      "than recorded and the motion cannot be used. Give the loop real-time priority (see `thimble "
+      "doctor`), close other programs, and repeat.",
       late.late, late.ticks, 1e3 * late.worst);
 }
 
 driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOptions& options) {
   if (!(options.force_most >= kForceLeast)) {
     return driver::Error{fmt::format(
-        "The largest force must be {:g} N at least: less moves no arm that we know.", kForceLeast)};
+        "The force limit must be at least {:g} N; no known arm moves under less.", kForceLeast)};
   }
   if (!(options.force_most <= file.limits.force_max)) {
-    return driver::Error{
-        fmt::format("A largest force of {:g} N is more than the {:g} N that the arm file allows "
-                    "(gate.force_max).",
-                    options.force_most, file.limits.force_max)};
+    return driver::Error{fmt::format(
+        "The force limit of {:g} N exceeds the {:g} N that the arm file allows (gate.force_max).",
+        options.force_most, file.limits.force_max)};
   }
   // After carrying the mass, some force must remain to move it.
   const double carried = kCarriedMost * options.force_most / scene::kGravity;
   const double most = std::min(kKnownMassMost, carried);
   if (!(options.known_mass >= 0 && options.known_mass <= most)) {
     return driver::Error{
-        fmt::format("The known mass must be {:.2g} kg at most: with no more than {:g} N its weight "
-                    "has to be carried, and shaken.",
+        fmt::format("The known mass must be at most {:.2g} kg; the arm must carry and shake it "
+                    "with at most {:g} N.",
                     most, options.force_most)};
   }
   return {};

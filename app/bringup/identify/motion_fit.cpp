@@ -25,8 +25,8 @@ class Fit {
     if (equations_.torn()) return MotionEquations::torn_error(equations_.motion());
     if (equations_.equations().size() < 300) {
       return driver::Error{
-          "The motion is too short or the tip stood still for most of it, so nothing can be "
-          "fitted; let it move freely for some ten seconds."};
+          "The motion cannot be fitted: it is too short, or the tip was at rest most of the time. "
+          "Let it move freely for about ten seconds."};
     }
     constexpr std::size_t kSome = 8;  // enough for a first search
     double best = coarse_delay([this](double delay) { return residual_at(delay, kSome); });

@@ -174,24 +174,25 @@ class Probe {
   }
 
   static driver::Error against(int joint, double counts) {
-    return {fmt::format(
-        "Motor {} pulls against its encoder: its joint went {:.0f} counts the wrong way. Run "
-        "`thimble feel-check`, which names the wire, and mend it or its sign in the arm file.",
-        joint + 1, std::max(0.0, -counts))};
+    return {
+        fmt::format("Motor {} pulls against its encoder: its joint moved {:.0f} counts in the "
+                    "wrong direction. Run `thimble feel-check`, which names the wire; correct the "
+                    "wire or its sign in the arm file.",
+                    joint + 1, std::max(0.0, -counts))};
   }
 
   static driver::Error moves_by_itself(int joint) {
     return {fmt::format(
-        "The joint of motor {} moved to the same side whichever way it was pushed: something else "
-        "moves the tip. Let go of the grip, and keep cables off the arm.",
+        "The joint of motor {} moved in the same direction for both directions of the push: "
+        "something else moves the tip. Let go of the grip, and keep cables off the arm.",
         joint + 1)};
   }
 
   static driver::Error unmoved(int joint, double counts, double force) {
     return {fmt::format(
-        "Motor {} moved its joint by {:.0f} counts under {:g} N: its dry friction is higher "
+        "Motor {} moved its joint by only {:.0f} counts under {:g} N: the dry friction is higher "
         "(--force-most allows more force), the tip is held, the joint sticks, or the motor is "
-        "dead. Let go of the grip, and run `thimble feel-check`.",
+        "dead. Let go of the grip and run `thimble feel-check`.",
         joint + 1, counts, force)};
   }
 

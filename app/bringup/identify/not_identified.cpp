@@ -15,17 +15,16 @@ using Sentences = std::vector<std::string>;
 void of_constants(const ArmConstants& found, Sentences& all) {
   if (!found.absolute) {
     all.emplace_back(
-        "Scale: motion alone shows no mass without a force, so the torque constants of the arm "
-        "file were taken to be right on average. All but the delay is as wrong as they are; a "
-        "known mass on the tip (--known-mass) measures them.");
+        "Scale: motion shows only ratios of mass and force, so the mean torque constant of the arm "
+        "file was assumed to be correct. Its error affects every constant except the delay. A "
+        "known mass on the tip (--known-mass) measures it.");
   }
   if (found.viscous.holds(0)) {
-    all.push_back(fmt::format(
-        "Viscous friction: too weak beside dry friction to be seen; below {:.3g} N s/m.",
-        std::max(0.0, found.viscous.value + found.viscous.plus_minus)));
+    all.push_back(fmt::format("Viscous friction: hidden by dry friction; below {:.3g} N s/m.",
+                              std::max(0.0, found.viscous.value + found.viscous.plus_minus)));
   }
   if (found.weight.holds(0)) {
-    all.push_back(fmt::format("Weight: none seen; below {:.2g} mN.",
+    all.push_back(fmt::format("Weight: none detected; below {:.2g} mN.",
                               1e3 * (found.weight.value + found.weight.plus_minus)));
   }
 }
@@ -33,22 +32,21 @@ void of_constants(const ArmConstants& found, Sentences& all) {
 void of_cables(const Identified& identified, Sentences& all) {
   const CableFit& lines = identified.lines;
   if (lines.noise.empty()) {
-    all.emplace_back("Cables that stretch: they were not looked for.");
+    all.emplace_back("Cables that stretch: not searched.");
   } else if (!lines.stretches) {
     const Eigen::Vector3d from =
         lines.unseen_from.cwiseMin(Eigen::Vector3d::Constant(LineForces::kHighest));
     all.push_back(fmt::format(
-        "Cables that stretch: no compliance was seen; a link that oscillates on its cable below "
-        "{:.0f}, {:.0f}, {:.0f} Hz (joint by joint) would have been.",
+        "Cables that stretch: no compliance detected; a link that oscillates on its cable below "
+        "{:.0f}, {:.0f}, {:.0f} Hz (joints 1, 2, 3) would have been detected.",
         from[0], from[1], from[2]));
   } else if (identified.constants.cables) {
     for (std::size_t i = 0; i < 3; ++i) {
       const CableConstants& cable = (*identified.constants.cables)[i];
       if (CableConstants::sees(cable.resonance)) continue;
       all.push_back(fmt::format(
-          "Resonance of motor and link {}: not seen to 5 % below {:g} Hz; inertia and stiffness "
-          "make "
-          "it {:.0f} +- {:.0f} Hz.",
+          "Resonance of motor and link {}: not measured to 5 % below {:g} Hz; computed from "
+          "inertia and stiffness: {:.0f} +- {:.0f} Hz.",
           i + 1, LineForces::kHighest, cable.resonance.value, cable.resonance.plus_minus));
     }
   }
@@ -58,14 +56,14 @@ void of_play(const Identified& identified, Sentences& all) {
   const PlayFit& play = identified.play;
   if (!play.searched) {
     all.emplace_back(
-        "Play: not looked for. It shows by the motors that turn freely in it, apart from their "
-        "links, and is looked for where cables were seen to stretch.");
+        "Backlash: not searched. It shows when motors turn freely, apart from their links, and is "
+        "searched only if cables stretch.");
     return;
   }
   if (!play.fits) {
     all.push_back(fmt::format(
-        "Play: not told. Neither with play nor without is the motion of the motors understood to "
-        "the encoders' steps (chi^2 {:.1f} and {:.1f} per degree of freedom).",
+        "Backlash: not identified. The motion of the motors fits neither with nor without backlash "
+        "within the encoder steps (chi^2 {:.1f} and {:.1f} per degree of freedom).",
         play.with.misfit, play.without.misfit));
     return;
   }
@@ -75,7 +73,7 @@ void of_play(const Identified& identified, Sentences& all) {
     none += fmt::format("{}{:.2g} mrad (joint {})", none.empty() ? "" : ", ",
                         1e3 * (play.width[i].value + play.width[i].plus_minus), i + 1);
   }
-  if (!none.empty()) all.push_back("Play: none seen above " + none + ", whole width.");
+  if (!none.empty()) all.push_back("Backlash: none detected above " + none + ", whole width.");
 }
 
 /// Detection limits of one friction of the motors' side, joint by joint.
@@ -106,14 +104,14 @@ void of_rubbing(const Identified& identified, Sentences& all) {
   const RubbingJoints& rubbing = identified.rubbing;
   if (!rubbing.searched) {
     all.emplace_back(
-        "Friction of single joints: not looked for; the friction along the axes of the tip is all "
-        "that is told.");
+        "Friction of single joints: not searched; only the friction along the axes of the tip is "
+        "reported.");
     return;
   }
   if (rubbing.seen) return;
-  all.push_back("Dry friction of joints beside that of the tip: none seen above " +
+  all.push_back("Dry friction of joints in addition to that of the tip: none detected above " +
                 unseen_friction(identified, rubbing.coulomb_below, "mN m") + ".");
-  all.push_back("Viscous friction of joints beside that of the tip: none seen above " +
+  all.push_back("Viscous friction of joints in addition to that of the tip: none detected above " +
                 unseen_friction(identified, rubbing.viscous_below, "mN m s/rad") + ".");
 }
 
@@ -122,14 +120,14 @@ void of_rotor_friction(const Identified& identified, Sentences& all) {
   if (!identified.lines.stretches && !play.searched) return of_rubbing(identified, all);
   if (!play.searched) {
     all.emplace_back(
-        "Friction of single joints: not looked for; the friction along the axes of the tip is all "
-        "that is told.");
+        "Friction of single joints: not searched; only the friction along the axes of the tip is "
+        "reported.");
     return;
   }
   if (!play.fits || !play.friction.fits) {
     all.emplace_back(
-        "Friction of single joints: not told, for the motion of the motors is not understood to "
-        "the encoders' steps.");
+        "Friction of single joints: not identified; the motion of the motors does not fit within "
+        "the encoder steps.");
     return;
   }
   const RotorFriction& friction = play.friction;
@@ -138,16 +136,18 @@ void of_rotor_friction(const Identified& identified, Sentences& all) {
   const std::string viscous =
       unseen_friction(identified, friction.viscous, friction.shows_viscous, "mN m s/rad");
   if (!dry.empty()) {
-    all.push_back("Dry friction of joints beside that of the tip: none seen above " + dry + ".");
+    all.push_back("Dry friction of joints in addition to that of the tip: none detected above " +
+                  dry + ".");
   }
   if (!viscous.empty()) {
-    all.push_back("Viscous friction of joints beside that of the tip: none seen above " + viscous +
-                  ".");
+    all.push_back(
+        "Viscous friction of joints in addition to that of the tip: none detected above " +
+        viscous + ".");
   }
   if (friction.seen) {
     all.emplace_back(
-        "Dry friction of a joint by direction: not told. Half of what it differs by is a constant "
-        "torque, which looks like weight.");
+        "Dry friction of a joint by direction: not identified. Half of the difference is a "
+        "constant torque, which cannot be distinguished from weight.");
   }
 }
 
@@ -158,17 +158,17 @@ void of_friction(const FrictionDirections& friction, Sentences& all) {
       most = std::max({most, friction.mean[i].plus_minus, friction.uneven[i].plus_minus});
     }
     all.push_back(fmt::format(
-        "Dry friction that differs between axes or directions: none seen beyond {:.2g} mN.",
+        "Dry friction that differs between axes or directions: none detected above {:.2g} mN.",
         1e3 * most));
   }
   all.emplace_back(
-      "Dry friction up and down: what it differs by is the same as weight, in motion and at rest, "
-      "and stands there.");
+      "Dry friction up and down: a difference cannot be distinguished from weight, in motion or at "
+      "rest, and is included in the weight.");
 }
 
 void of_saturation(const Identified& identified, Sentences& all) {
   if (identified.lines.stretches) {
-    all.emplace_back("Saturation of the amplifiers: not looked for behind cables that stretch.");
+    all.emplace_back("Saturation of the amplifiers: not searched because the cables stretch.");
     return;
   }
   std::string none, blind;
@@ -179,36 +179,37 @@ void of_saturation(const Identified& identified, Sentences& all) {
     text += fmt::format("{}{:.2g} N m (joint {})", text.empty() ? "" : ", ", one.asked, i + 1);
   }
   if (!none.empty()) {
-    all.push_back("Saturation of the amplifiers: none seen up to " + none +
-                  ", the most that was asked for.");
+    all.push_back("Saturation of the amplifiers: none detected up to " + none +
+                  ", the highest torque requested.");
   }
   if (!blind.empty()) {
-    all.push_back("Saturation of the amplifiers: up to " + blind +
-                  " too little was asked for beyond friction to see it.");
+    all.push_back("Saturation of the amplifiers: not searched; the highest torque requested was " +
+                  blind + ", too little above friction.");
   }
 }
 
 void of_encoders(const Encoders& encoders, Sentences& all) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (encoders.step[i].counts == 0) {
-      all.push_back(fmt::format(
-          "Step of encoder {}: it did not count step by step, so the smallest step is not known.",
-          i + 1));
+      all.push_back(
+          fmt::format("Step of encoder {}: the encoder did not count step by step, so its smallest "
+                      "step is unknown.",
+                      i + 1));
     }
   }
   all.emplace_back(
-      "Counts of a turn: the steps of the encoders are those of the arm file; what was seen is how "
-      "many of them a report differs from the next at the least.");
+      "Counts per turn: taken from the arm file. Only the smallest difference between two reports "
+      "was measured, in counts.");
   if (!encoders.rest) {
-    all.emplace_back("Noise of the encoders: not asked for.");
+    all.emplace_back("Noise of the encoders: not requested.");
     return;
   }
   for (std::size_t i = 0; i < 3; ++i) {
     if (encoders.rest->at_rest[i]) continue;
-    all.push_back(fmt::format(
-        "Noise of encoder {}: the joint did not come to rest, so noise and motion are not told "
-        "apart.",
-        i + 1));
+    all.push_back(
+        fmt::format("Noise of encoder {}: not measured; the joint did not come to rest, so noise "
+                    "cannot be distinguished from motion.",
+                    i + 1));
   }
 }
 
@@ -238,10 +239,9 @@ void of_waves(const Identified& identified, Sentences& all) {
     std::string others;
     for (const double other : waves.rivals) others += fmt::format(", {:g}", other);
     all.push_back(fmt::format(
-        "Cogging and ripple of the motors: some was seen and taken off the motion, but not how "
-        "many "
-        "periods it has in a turn: {:g}{} explain it about as well. Take more time (--seconds), or "
-        "write drive_train: {{periods_per_turn: ...}} of the motors into the arm file.",
+        "Cogging and ripple of the motors: detected and removed from the motion, but the number of "
+        "periods per turn is ambiguous: {:g}{} fit about equally well. Record for longer "
+        "(--seconds), or set drive_train: {{periods_per_turn: ...}} in the arm file.",
         waves.periods, others));
     return;
   }
@@ -250,7 +250,7 @@ void of_waves(const Identified& identified, Sentences& all) {
     const std::string any = unseen_waves(identified, cogging, &MotorWave::below_of_any);
     if (any.empty()) continue;
     all.push_back(fmt::format(
-        "{}: none seen; {}{} with any of {:g} to {:g} periods in a turn would have been.",
+        "{}: none detected; {}{} with {:g} to {:g} periods per turn would have been detected.",
         cogging ? "Cogging of the motors" : "Ripple of the motors",
         few.empty() || few == any ? "" : fmt::format("{} with up to {:g}, ", few, kFewPeriods), any,
         waves.least, waves.most));
@@ -261,48 +261,51 @@ std::string watchdog_text(const WatchdogSeen& seen) {
   switch (seen.end) {
     case WatchdogEnd::kTooLong:
       return fmt::format(
-          "within its time a free tip would go farther than {:.0f} mm, so nothing "
-          "was pushed. `thimble feel-check` measures it on a hand.",
+          "not measured; a free tip would move farther than {:.0f} mm before it acts. `thimble "
+          "feel-check` measures it with a hand on the grip.",
           1e3 * kWatchdogWayMost);
     case WatchdogEnd::kNoRoom:
-      return "a side of the workspace was too near for a push.";
+      return "not measured; the tip was too close to a side of the workspace.";
     case WatchdogEnd::kTooMuch:
-      return fmt::format("its dry friction needs {:.2f} N, more than is allowed.", seen.force);
+      return fmt::format(
+          "not measured; the dry friction needs a push of {:.2f} N, which exceeds the limit.",
+          seen.force);
     case WatchdogEnd::kAnswersOnly:
-      return "the arm speaks only when spoken to, so nobody sees what it does in silence.";
+      return "not measured; the arm sends reports only on request, so its motion without messages "
+             "cannot be observed.";
     case WatchdogEnd::kHeld:
-      return fmt::format("the tip did not move under {:.2f} N.", seen.force);
+      return fmt::format("not measured; the tip did not move under {:.2f} N.", seen.force);
     case WatchdogEnd::kLetGo:
     case WatchdogEnd::kStillOn:
       return fmt::format(
-          "the motors were still on {:.0f} ms after the last message, when the tip "
-          "had gone {:.0f} mm and was let go.",
+          "not measured; the motors were still on {:.0f} ms after the last message, when the tip "
+          "had moved {:.0f} mm and was released.",
           1e3 * seen.time, 1e3 * seen.way);
     case WatchdogEnd::kStopped:
     case WatchdogEnd::kSeen:
       break;
   }
-  return "a fault, or a tip that left the workspace, ended it.";
+  return "not measured; a fault, or a tip that left the workspace, ended the measurement.";
 }
 
 void of_link(const Identified& identified, Sentences& all) {
   if (!identified.reports) {
-    all.emplace_back("Report period and jitter: not asked for.");
+    all.emplace_back("Report period and jitter: not requested.");
   } else if (identified.reports->period.value == 0) {
-    all.push_back(fmt::format("Report period and jitter: only {} reports came in the time.",
+    all.push_back(fmt::format("Report period and jitter: not measured; only {} reports arrived.",
                               identified.reports->reports));
   } else if (identified.reports->blurred) {
     all.emplace_back(
-        "Report period and jitter: reports come so unevenly that a late one and a missing one "
-        "cannot be told apart; both figures are rough.");
+        "Report period and jitter: approximate only; reports are so irregular that a late one "
+        "cannot be distinguished from a missing one.");
   }
   if (!identified.watchdog) {
     all.push_back("Watchdog of the firmware: " +
-                  std::string(!identified.reports ? "not asked for."
+                  std::string(!identified.reports ? "not requested."
                               : !identified.against.empty()
-                                  ? "an arm whose fit is bad is not pushed further."
-                                  : "behind cables that stretch the oscillation of the links hides "
-                                    "when the force goes off."));
+                                  ? "not measured; an arm with a bad fit is not pushed further."
+                                  : "not measured; links that oscillate on their cables hide when "
+                                    "the force goes off."));
   } else if (!identified.watchdog->known()) {
     all.push_back("Watchdog of the firmware: " + watchdog_text(identified.watchdog->last));
   }
@@ -311,19 +314,19 @@ void of_link(const Identified& identified, Sentences& all) {
 void of_workspace(const Identified& identified, Sentences& all) {
   const OverPlaces& over = identified.over;
   if (!over.fit) {
-    all.push_back("Mass over the workspace: " + over.not_done +
-                  " The tip moved in one place, within 4 cm; links whose share changes with the "
-                  "pose look like one mass there.");
+    all.push_back(
+        "Mass over the workspace: " + over.not_done +
+        " The tip moved within 4 cm of one place, where the links look like a single mass.");
   } else if (!over.fit->links) {
-    all.push_back(fmt::format(
-        "Links: none seen; over {} places of the workspace the mass along an axis is the same "
-        "within {:.2g} %.",
-        over.fit->places.size(), 100 * over.fit->change_most));
+    all.push_back(
+        fmt::format("Links: none detected; over {} places of the workspace the mass along an axis "
+                    "is the same within {:.2g} %.",
+                    over.fit->places.size(), 100 * over.fit->change_most));
   } else {
     all.emplace_back(
-        "Coupling of the links, and their moment along C: motion does not tell them from mass and "
-        "weight at the tip. Coupling is the least that links can have, moment along C what weighs "
-        "less than nothing, and the tip has the rest; every such choice moves alike.");
+        "Coupling of the links, and their moment along C: motion cannot distinguish them from mass "
+        "and weight at the tip. The coupling is set to its minimum, the moment along C takes any "
+        "negative weight, and the tip has the rest; all such choices move identically.");
   }
 }
 
@@ -335,8 +338,8 @@ std::vector<std::string> not_identified(const Identified& identified) {
   of_cables(identified, all);
   if (identified.play.told()) {
     all.emplace_back(
-        "Dry friction that differs between axes or directions: not looked for behind play or "
-        "motors that rub.");
+        "Dry friction that differs between axes or directions: not searched because of backlash or "
+        "friction of the motors.");
   } else {
     of_friction(identified.friction, all);
   }

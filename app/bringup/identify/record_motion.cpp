@@ -55,20 +55,20 @@ class Recorder {
     p_WM_ = bench_.device().state().p_WT;
     if (file_.workspace.holds(p_WM_)) return {};
     return driver::Error{
-        "The tip is outside the workspace of the arm file, so nothing was asked of the motors. Put "
-        "it into the middle of the workspace, and run `thimble doctor` if it is there: the arm may "
-        "not be calibrated."};
+        "The tip is outside the workspace of the arm file, so no force was applied. Move it to the "
+        "middle of the workspace. If it is already there, run `thimble doctor`: the arm may not be "
+        "calibrated."};
   }
 
   driver::Error why() const {
     const driver::Fault fault = bench_.device().fault();
-    if (fault == driver::Fault::kNone) return driver::Error{"It was stopped; nothing was kept."};
+    if (fault == driver::Fault::kNone) return driver::Error{"Stopped; nothing was saved."};
     std::string said =
-        std::string(driver::describe(fault)) + " The motors are off; nothing was kept.";
+        std::string(driver::describe(fault)) + " The motors are off; nothing was saved.";
     if (fault == driver::Fault::kCountsUnchanged) {
       said += fmt::format(
-          " If encoders count when you move the tip, its friction is too high for the {:g} N that "
-          "are allowed (--force-most).",
+          " If the encoders count when you move the tip, its friction is too high for the allowed "
+          "{:g} N (--force-most).",
           force_most_);
     }
     return driver::Error{said};
@@ -168,14 +168,14 @@ class Recorder {
 
   driver::Error went_away() const {
     std::string said =
-        "The tip left the space that it may move in, 4 cm about where it began and inside the "
-        "workspace of the arm file, so the motors went off and nothing was kept: something pulls "
-        "at it, or its motors are far stronger than the arm file says. Begin in the middle of the "
-        "workspace, without a hand on the grip.";
+        "The tip left its allowed space (4 cm around its start, inside the workspace of the arm "
+        "file), so the motors went off and nothing was saved. Something pulls at it, or its motors "
+        "are far stronger than the arm file says. Start in the middle of the workspace, without a "
+        "hand on the grip.";
     if (!carried_W_.isZero(0)) {
       said += fmt::format(
-          " Or its motors are too weak to carry the known mass with {:g} N: take a lighter one, or "
-          "allow more (--force-most).",
+          " Or the motors cannot carry the known mass with {:g} N: use a lighter mass, or allow "
+          "more force (--force-most).",
           force_most_);
     }
     return driver::Error{said};
@@ -242,7 +242,7 @@ bool moves_easily(const scene::ArmFile& file, const Eigen::Vector3d& p_W) {
 }
 
 std::vector<Eigen::Vector3d> places_in(const scene::ArmFile& file, int count) {
-  constexpr double kRoom = 0.02;                // m about a point, in which the arm moves easily
+  constexpr double kRoom = 0.02;  // m, radius around a point in which the arm must move easily
   constexpr double kLeast = 0.3, kStep = 0.05;  // of the distance to a corner
   const auto has_room = [&](const Eigen::Vector3d& p_W) {
     for (const double x : {-kRoom, kRoom}) {

@@ -1,5 +1,5 @@
-// What a body in two hands stores for each of them, and what the energy stage of each hand's gate
-// makes of it.
+// Energy that a body in two hands stores for each hand, and its use by the energy stage of each
+// hand's gate.
 
 #include "body/motion/shared_body.h"
 
@@ -49,7 +49,8 @@ std::shared_ptr<Body> floating_bar(double damping) {
   return std::make_shared<Body>(RigidMotion(*body, 1));
 }
 
-/// Two hands that push a body at random, each for some ticks the same way, and the work of each.
+/// Two hands that push a body at random, each for some ticks in the same direction, and the work of
+/// each.
 struct Pushes {
   explicit Pushes(double damping) : body(floating_bar(damping)), hands{{{body, 2}, {body, 2}}} {}
 
@@ -70,10 +71,10 @@ struct Pushes {
   std::array<double, 2> work{};
 };
 
-TEST(SharedBody, StoresForEachHandWhatThisHandPutIn) {
+TEST(SharedBody, StoresEnergySeparatelyForEachHand) {
   Pushes pushes(0);
   support::Random random(1);
-  std::array<double, 2> flow{};  // J, of work in and out
+  std::array<double, 2> flow{};  // J, sum of the work in and out
   std::array<Vector3d, 2> f_W;
   for (int k = 0; k < 20'000; ++k) {
     if (k % 20 == 0) f_W = {random.in_box(0.1), random.in_box(0.1)};
@@ -81,14 +82,14 @@ TEST(SharedBody, StoresForEachHandWhatThisHandPutIn) {
     pushes.tick(f_W);
     for (std::size_t i = 0; i < 2; ++i) {
       flow[i] += std::abs(pushes.work[i] - before[i]);
-      // The test takes the chord of each way, the body the tangents at its ends.
+      // The test uses the chord of each displacement, the body the tangents at its ends.
       ASSERT_NEAR(pushes.hands[i].energy(), pushes.work[i], 1e-2 * flow[i] + 1e-6) << k;
     }
   }
   EXPECT_GT(flow[0], 1e-3);
 }
 
-TEST(SharedBody, StoresInSumItsEnergy) {
+TEST(SharedBody, StoredPartsSumToItsEnergy) {
   Pushes pushes(0);
   support::Random random(2);
   for (int k = 0; k < 5'000; ++k) {
@@ -98,8 +99,8 @@ TEST(SharedBody, StoresInSumItsEnergy) {
   }
 }
 
-TEST(SharedBody, LossesPayForNoHand) {
-  // One hand drags the body through a thick liquid, the other holds it without a force.
+TEST(SharedBody, LossesAreNoCreditForAHand) {
+  // One hand drags the body through a thick liquid; the other holds it without force.
   Pushes pushes(5);
   const double before = pushes.hands[1].energy();
   double least = before;
@@ -112,8 +113,8 @@ TEST(SharedBody, LossesPayForNoHand) {
   EXPECT_GT(least, before - 1e-6);
 }
 
-TEST(SharedBody, WorkOfOneHandIsAFallForTheOther) {
-  // The body stands: what one hand gives in a tick the other takes in the same tick.
+TEST(SharedBody, WorkOfOneHandReducesTheOthersEnergy) {
+  // The body is at rest: the energy from one hand goes to the other in the same tick.
   Pushes pushes(0);
   for (int k = 0; k < 50; ++k) pushes.tick({Vector3d(0, 1, 0), Vector3d(0, 0, 0)});
   const double energy = pushes.body->motion().energy();
@@ -124,10 +125,10 @@ TEST(SharedBody, WorkOfOneHandIsAFallForTheOther) {
   EXPECT_LT(pushes.hands[1].energy(), second - 0.015);
 }
 
-/// A bar that two hands hold, each through a gate with its account of energy.
+/// A bar that two hands hold, each through a gate with an energy account.
 class Held {
  public:
-  /// `damping` of the body, N s/m.
+  /// Takes the damping of the body, N s/m.
   explicit Held(double damping) {
     MotionChoice choice{.kind = MotionKind::kRigid, .mass = 0.15};
     choice.damping = damping;
@@ -143,8 +144,8 @@ class Held {
     for (std::size_t i = 0; i < 2; ++i) rigs_[i].open(kGrip[i]);
   }
 
-  /// Lets the hands be where they hold the bar, moved by `move_W` (m); `extra_W`: a force that the
-  /// law of the second hand adds, N.
+  /// Runs a tick with the hands at their grips on the bar, moved by `move_W` (m). `extra_W`: a
+  /// force that the law of the second hand adds, N.
   void tick(const std::array<Vector3d, 2>& move_W, const Vector3d& extra_W = {0, 0, 0}) {
     for (std::size_t i = 0; i < 2; ++i) {
       const Vector3d p_W = kGrip[i] + move_W[i];
@@ -162,12 +163,12 @@ class Held {
   }
 
   const ExplainedRig& rig(std::size_t hand) const { return rigs_[hand]; }
-  /// Returns the work on both hands beyond what their own damping took, J.
+  /// Returns the work on both hands plus the energy that their own damping dissipated, J.
   double given() const {
     return rigs_[0].work() + rigs_[1].work() - rigs_[0].dissipated() - rigs_[1].dissipated();
   }
 
-  int changed = 0;     // forces that a gate changed
+  int changed = 0;     // number of forces that a gate changed
   double largest = 0;  // N
 
  private:
@@ -180,7 +181,7 @@ class Held {
   bool begun_ = false;
 };
 
-/// Both hands on closed loops, the second one `phase` (rad) behind.
+/// Returns positions of both hands on closed loops, the second one `phase` (rad) behind.
 std::array<Vector3d, 2> loops(int tick, double frequency, double phase) {
   const auto at = [&](double angle) {
     return Vector3d(0.02 * std::sin(angle), 0.004 * (1 - std::cos(angle)),
@@ -205,16 +206,16 @@ TEST(SharedBody, HandsOnClosedLoopsWithLossesLoseNoForce) {
   EXPECT_EQ(held.changed, 0);
 }
 
-TEST(SharedBody, HandsOnClosedLoopsGetNoEnergyInSum) {
+TEST(SharedBody, HandsOnClosedLoopsGetNoTotalEnergy) {
   Held held(0);
   for (int k = 0; k < 60'000; ++k) held.tick(loops(k, 1, 1.5));
-  // A hand's allowance, twice the onset and the credit that it may have saved.
+  // The hand's allowance, twice the onset, and its maximum saved credit.
   const driver::EnergyGuardSettings stage = explained_stage();
   EXPECT_LT(held.given(), 2 * (stage.reservoir + stage.allowance + 2 * stage.onset));
 }
 
-/// Lets the first hand drag the bar through a thick liquid to and fro, and the law of the second
-/// one push this hand along wherever it goes. Returns the work on the second hand, J.
+/// The first hand drags the bar back and forth through a thick liquid; the law of the second hand
+/// pushes that hand in its direction of motion. Returns the work on the second hand, J.
 double pushed_along(double damping) {
   Held held(damping);
   Vector3d last_W(0, 0, 0);
@@ -227,7 +228,7 @@ double pushed_along(double damping) {
   return held.rig(1).work() - held.rig(1).dissipated();
 }
 
-TEST(SharedBody, DragOfOneHandPaysForNoWrongForce) {
+TEST(SharedBody, DragIsNoCreditForAWrongForce) {
   const driver::EnergyGuardSettings stage = explained_stage();
   const double tick = 2.5 * 0.26 * 2 * kTick;  // and the delay
   for (const double damping : {0.0, 5.0, 20.0}) {

@@ -18,7 +18,7 @@ using Gap = GapTheta;
 
 constexpr std::size_t kGapFrom = 20, kGapTicks = 60;
 
-/// Motors that are pushed to and fro, fast enough to run through their play and to stop.
+/// Motors that are pushed back and forth, fast enough to cross their backlash and to stop.
 ArmMotion shaken() {
   ArmMotion motion;
   motion.dt = 1e-3;
@@ -56,7 +56,7 @@ Gap::Vector drawn(support::Random& random, bool rubs) {
 
 using Angles = std::vector<double>;
 
-TEST(GapModel, MovesAlikeAloneBesideOthersAndOnPlainLanes) {
+TEST(GapModel, IsBitIdenticalInAnyLaneAndWithoutAvx2) {
   const ArmMotion motion = shaken();
   support::Random random(std::uint64_t{3});
   support::RunHash hash;
@@ -81,11 +81,11 @@ TEST(GapModel, MovesAlikeAloneBesideOthersAndOnPlainLanes) {
       for (const double angle : own) hash.add(angle);
     }
   }
-  // As it was with AVX2; gap_model_on_plain_lanes asks without.
+  // Stored with AVX2; gap_model_on_plain_lanes tests the code without it.
   EXPECT_EQ(hash.value(), 0xad7631cfb7704c2u);
 }
 
-/// Returns how an axis of mass 1 moves under a steady force beside dry friction, by the book.
+/// Returns the exact motion of an axis of mass 1 under a constant force and dry friction.
 std::pair<double, double> slid(double v, double a, double c, double t) {
   const double sliding = a - std::copysign(c, v), rest = -v / sliding;
   if (v != 0 && (rest <= 0 || rest > t)) return {v * t + 0.5 * sliding * t * t, v + sliding * t};
@@ -95,8 +95,8 @@ std::pair<double, double> slid(double v, double a, double c, double t) {
   return {x + 0.5 * on * left * left, on * left};
 }
 
-TEST(GapModel, SlidesTheTipLikeABodyWithDryFriction) {
-  // Nothing pulls on the tip but its weight: motors stay where they are, their cables slack.
+TEST(GapModel, TipSlidesLikeABodyWithDryFriction) {
+  // Only the weight pulls on the tip: motors stay where they are, with slack cables.
   ArmMotion motion = shaken();
   for (MotionSample& sample : motion.samples) {
     sample.tau.setZero();
@@ -106,7 +106,7 @@ TEST(GapModel, SlidesTheTipLikeABodyWithDryFriction) {
   theta.segment<3>(Gap::kInertia).setOnes();
   theta.segment<3>(Gap::kPlay).setConstant(10);
   theta[Gap::kCoulomb] = 0.5;
-  // It goes on, stays, turns round, comes to rest; all of them in lanes beside one another.
+  // The axis continues, stays, reverses or comes to rest, all in adjacent lanes.
   const std::array<std::pair<double, double>, kGapRunsAtOnce> cases = {
       {{0.02, 0.8}, {0, 0.4}, {-0.01, 2}, {0.02, -0.3}}};
   std::array<Gap::Vector, kGapRunsAtOnce> thetas;

@@ -28,7 +28,7 @@ ArmConstants some_constants() {
   return found;
 }
 
-TEST(IdentifiedFile, IsTheArmsOwnButForWhatWasMeasured) {
+TEST(IdentifiedFile, ChangesOnlyMeasuredConstants) {
   const std::filesystem::path arm =
       std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml";
   const auto file = support::scratch_folder() / "thimble_identified.yaml";
@@ -54,7 +54,7 @@ TEST(IdentifiedFile, IsTheArmsOwnButForWhatWasMeasured) {
       << text.str();
   EXPECT_TRUE(support::refuses(
       write_identified(arm, file, some_constants(), {.date = "2026-11-23", .arm = "A 1"}),
-      "is there already"));
+      "already exists"));
 }
 
 std::string text_of(const char* arm) {
@@ -63,7 +63,7 @@ std::string text_of(const char* arm) {
   return content.str();
 }
 
-TEST(IdentifiedFile, NamesMotorsAndCablesThatWereSeen) {
+TEST(IdentifiedFile, WritesDetectedMotorsAndCables) {
   ArmConstants found = some_constants();
   found.cables.emplace();
   for (std::size_t i = 0; i < 3; ++i) {
@@ -86,7 +86,7 @@ TEST(IdentifiedFile, NamesMotorsAndCablesThatWereSeen) {
                   "2026-11-23, A 1, +- 2, 2, 2]\n"),
       std::string::npos)
       << *added;
-  // Once there, they are exchanged, whatever form they have.
+  // Existing keys are replaced, whatever their form.
   (*found.cables)[1].stiffness.value = 222;
   const auto again = identified_text(*added, found, mark);
   ASSERT_TRUE(again.ok()) << again.error().message;
@@ -100,7 +100,7 @@ TEST(IdentifiedFile, NamesMotorsAndCablesThatWereSeen) {
   EXPECT_EQ(train_of(*kept).current_lag, 0.001);
 }
 
-TEST(IdentifiedFile, LeavesOutAWeightThatIsNotToldFromNone) {
+TEST(IdentifiedFile, OmitsAnInsignificantWeight) {
   ArmConstants found = some_constants();
   found.weight = {0.0002, 0.0003};
   const auto text = identified_text(text_of("vintage_phantom"), found, {});
@@ -108,7 +108,7 @@ TEST(IdentifiedFile, LeavesOutAWeightThatIsNotToldFromNone) {
   EXPECT_EQ(text->find("weight:"), std::string::npos);
 }
 
-TEST(IdentifiedFile, WritesNoWeightWhereNoneWasSeen) {
+TEST(IdentifiedFile, ReplacesAnInsignificantWeightByZero) {
   std::string text = text_of("vintage_phantom");
   text.insert(text.find("  motors:\n"), "    weight: 0.02\n");
   ArmConstants found = some_constants();
@@ -118,7 +118,7 @@ TEST(IdentifiedFile, WritesNoWeightWhereNoneWasSeen) {
   EXPECT_NE(written->find("weight: 0  #"), std::string::npos) << *written;
 }
 
-TEST(IdentifiedFile, TakesAPeriodOfMoreDigitsThanItWrites) {
+TEST(IdentifiedFile, AcceptsAPeriodWithMoreDigits) {
   Identified found;
   found.reports = ReportTiming{.period = {0.001000004, 1e-8}, .jitter = {1.4e-4, 3e-6}};
   const auto written = further_text(text_of("vintage_phantom"), found, {});
@@ -126,7 +126,7 @@ TEST(IdentifiedFile, TakesAPeriodOfMoreDigitsThanItWrites) {
 }
 
 TEST(IdentifiedFile, RefusesAFormThatItCannotChange) {
-  EXPECT_TRUE(support::refuses(identified_text("a: [", some_constants(), {}), "no YAML"));
+  EXPECT_TRUE(support::refuses(identified_text("a: [", some_constants(), {}), "not valid YAML"));
   std::string text = text_of("vintage_phantom");
   const std::size_t at = text.find("  tip:\n"), end = text.find("  motors:\n");
   text.replace(at, end - at, "  tip: {mass: 0.075, viscous: 0.005, coulomb: 0.04}\n");

@@ -1,5 +1,5 @@
-// What is found of wire, firmware and motors goes into the new file, and the arm of that file is
-// like the one that was measured.
+// Results for wire, firmware and motors are written to the new file, and the arm of that file
+// behaves like the measured one.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -64,7 +64,7 @@ TEST(IdentifiedTwin, HasTheDelayAndTheWatchdogOfItsArm) {
   EXPECT_NEAR(again->watchdog->time.value, found->watchdog->time.value, 0.002);
 }
 
-TEST(IdentifiedTwin, SaysInItsFileWhatNoKeyHolds) {
+TEST(IdentifiedTwin, WritesCommentsForValuesWithoutAKey) {
   Identified found;
   found.constants.mass = {0.08, 0.001};
   found.constants.coulomb = {0.04, 0.001};
@@ -93,7 +93,7 @@ TEST(IdentifiedTwin, SaysInItsFileWhatNoKeyHolds) {
   EXPECT_EQ(after.simulated.wire.jitter_ns, 0);
   EXPECT_EQ(after.simulated.wire.delay_out_ns, 200'000);
   EXPECT_EQ(after.simulated.firmware.report_period_ns, 1'000'000);
-  // 0.3 N m at the joint by the constants that torques were asked for with.
+  // 0.3 N m at the joint, with the constants used for the requested torques.
   const auto& drive = own.model.drives[1];
   EXPECT_NEAR(after.simulated.motors.current_max, 0.3 / (drive.ratio * drive.torque_constant),
               1e-4);
@@ -114,14 +114,14 @@ TEST(IdentifiedTwin, KeepsWhatWasNotMeasured) {
   EXPECT_EQ(put().firmware.watchdog_ns, own.firmware.watchdog_ns);
   EXPECT_EQ(put().firmware.report_period_ns, own.firmware.report_period_ns);
   EXPECT_EQ(put().wire.delay_out_ns, 3'000'000);
-  // An arm that answers is as quick as whoever asks.
+  // The report rate of an arm that sends only when asked depends on the host.
   found.reports = ReportTiming{.period = {0.0005, 1e-8}, .jitter = {6e-5, 1e-6}, .reports = 2000};
   found.watchdog.emplace();
   found.watchdog->last.end = WatchdogEnd::kAnswersOnly;
   EXPECT_EQ(put().firmware.report_period_ns, own.firmware.report_period_ns);
   found.watchdog.reset();
   EXPECT_EQ(put().firmware.report_period_ns, 500'000);
-  // A file that names jitter gets what was seen.
+  // A file that names jitter gets the measured value.
   std::string named = own_text();
   named.insert(named.find("    delay_in:"), "    jitter: 0.1\n");
   const auto text = further_text(*identified_text(named, found.constants, mark), found, mark);
@@ -129,7 +129,7 @@ TEST(IdentifiedTwin, KeepsWhatWasNotMeasured) {
   EXPECT_NEAR(1e-9 * static_cast<double>(read(*text).simulated.wire.jitter_ns), 2.078e-4, 1e-7);
 }
 
-TEST(IdentifiedTwin, OfABadFitSaysSoInEachMark) {
+TEST(IdentifiedTwin, BadFitIsInEveryMark) {
   Identified found;
   found.constants.mass = {0.08, 0.001};
   for (Estimate& gain : found.constants.gain) gain = {1.1, 0.01};
@@ -153,7 +153,7 @@ TEST(IdentifiedTwin, OfABadFitSaysSoInEachMark) {
       write_identified(kArm, file, found, {.date = "2026-11-25", .arm = "A 1"}), "there already"));
 }
 
-TEST(IdentifyForce, StaysBelowWhatTheUserAllows) {
+TEST(IdentifyForce, StaysBelowTheUsersLimit) {
   const HiddenArm arm = hidden_arm(7);
   double before = 0;
   for (const double allowed : {0.5, 1.0, 2.0}) {
@@ -174,7 +174,7 @@ TEST(IdentifyForce, StaysBelowWhatTheUserAllows) {
   }
 }
 
-TEST(IdentifyForce, IsRefusedBeyondTheFileAndWhereItCarriesNoMass) {
+TEST(IdentifyForce, LimitMustSuitTheFileAndTheMass) {
   const scene::ArmFile file = scene::load_arm(kArm).value();
   EXPECT_TRUE(check_forces(file, {}).ok());
   EXPECT_TRUE(check_forces(file, {.known_mass = 0.06}).ok());
@@ -186,7 +186,7 @@ TEST(IdentifyForce, IsRefusedBeyondTheFileAndWhereItCarriesNoMass) {
       support::refuses(check_forces(file, {.known_mass = 0.04, .force_most = 0.5}), "0.031 kg"));
 }
 
-TEST(IdentifyForce, OfTheWatchdogsPushIsWithinItToo) {
+TEST(IdentifyForce, WatchdogPushStaysWithinTheLimit) {
   const HiddenArm arm = hidden_arm(3);
   auto bench = simulated_bench(arm.file, 0);
   ASSERT_TRUE(bench.ok()) << bench.error().message;

@@ -1,6 +1,5 @@
-// What identifying never asks of an arm, whatever the arm, its hand and its faults are: more than
-// it says, or anything at all outside the workspace. tests/acceptance/FAULTS.md has a row for each
-// fault.
+// Identification never requests more force than its limit, and none outside the workspace, whatever
+// the arm, its hand and its faults are. tests/acceptance/FAULTS.md has a row for each fault.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -25,13 +24,13 @@ using support::Random;
 
 using HandPath = std::vector<std::pair<double, Eigen::Vector3d>>;
 
-/// A hidden arm, who holds it, and where its tip begins (W, m).
+/// A hidden arm, its hand, and the start of its tip (W, m).
 struct Case {
   HiddenArm arm;
   HandPath hand_W;
 };
 
-/// What befalls an arm while it is identified.
+/// A fault of an arm during its identification.
 struct Trouble {
   std::string name;
   std::function<void(Case&, Random&)> bring;
@@ -45,7 +44,7 @@ void take_in_hand(Case& held, Random& random) {
   hand.tremor_amplitude = random.uniform(0, 2e-4);
 }
 
-/// A point beyond the middle of a side of the workspace, by so many m.
+/// Returns the point at the distance `far` (m) outside the middle of a side of the workspace.
 Eigen::Vector3d beyond_side(const scene::WorkspaceBox& box, double far, Random& random) {
   Eigen::Vector3d p_W = box.middle();
   const auto axis = static_cast<Eigen::Index>(random.bits() % 3);
@@ -132,11 +131,11 @@ std::vector<Trouble> troubles() {
   };
 }
 
-/// What was seen of one arm.
+/// Observations of one arm.
 struct Seen {
-  bool whole = false;  ///< It moved to the end, with and without the known mass.
+  bool whole = false;  ///< It moved until the end, with and without the known mass.
   bool outside = false;
-  double asked = 0, sent = 0;  ///< The most, N.
+  double asked = 0, sent = 0;  ///< Max. requested and sent force, N.
   double asked_outside = 0, sent_outside = 0;
   std::string said;
 };
@@ -144,7 +143,7 @@ struct Seen {
 Seen watched(const Case& one, std::uint64_t seed) {
   Seen seen;
   const scene::ArmFile& file = one.arm.file;
-  // Outside is outside for good, until the arm is opened anew.
+  // Once outside, it counts as outside until the arm is opened again.
   bool out = false;
   const auto watch = [&](const driver::TickRecord& tick) {
     const Eigen::Vector3d wanted(tick.f_wanted_W.data()), sent(tick.f_sent_W.data());
@@ -158,12 +157,12 @@ Seen watched(const Case& one, std::uint64_t seed) {
     if (!(sent.norm() <= seen.sent_outside)) seen.sent_outside = sent.norm();
   };
   const std::atomic<bool> never{false};
-  // All that identifying asks of the motors, but for the watchdog's pushes (identify_link_test).
+  // All forces of an identification except the pushes for the watchdog (identify_link_test).
   for (const bool loaded : {false, true}) {
     out = false;
     scene::ArmFile bench_file = file;
     if (loaded) {
-      // As simulated_bench fixes it to the tip, with nobody's hand below.
+      // Fixed to the tip as by simulated_bench, without a supporting hand.
       bench_file.simulated.hand.mass += support::kKnownMass;
       bench_file.simulated.weight_B +=
           file.R_WB.transpose() * Eigen::Vector3d(0, 0, -scene::kGravity * support::kKnownMass);
@@ -189,7 +188,7 @@ Seen watched(const Case& one, std::uint64_t seed) {
   return seen;
 }
 
-TEST(IdentifyBounds, AreKeptWhateverTheArmItsHandAndItsFaultsAre) {
+TEST(IdentifyBounds, HoldForAnyArmHandAndFault) {
   const int arms = long_form() ? 40 : 2;
   for (const Trouble& trouble : troubles()) {
     SCOPED_TRACE(trouble.name);
@@ -208,7 +207,7 @@ TEST(IdentifyBounds, AreKeptWhateverTheArmItsHandAndItsFaultsAre) {
       EXPECT_LE(seen.sent, kIdentifyForceMax);
       EXPECT_EQ(seen.asked_outside, 0);
       EXPECT_EQ(seen.sent_outside, 0);
-      // Who leaves the workspace is told, and nothing is found.
+      // Leaving the workspace is an error, without a result.
       EXPECT_FALSE(seen.outside && seen.whole);
       EXPECT_EQ(seen.whole, seen.said.empty());
       whole += seen.whole ? 1 : 0;

@@ -34,7 +34,8 @@ using support::kKnownMass;
 using support::long_form;
 using support::Score;
 
-/// Draws an arm of a shipped file as hidden_arm does, all but the delays, which a Falcon's bus has.
+/// Draws a hidden arm from a shipped file like hidden_arm, except for the delays, which are those
+/// of a Falcon's bus.
 HiddenArm hidden_arm_of(const char* name, std::uint64_t seed) {
   support::Random random(seed);
   HiddenArm arm{.file = scene::load_arm(name).value()};
@@ -49,16 +50,16 @@ HiddenArm hidden_arm_of(const char* name, std::uint64_t seed) {
     arm.gain[i] = random.uniform(0.6, 1.6);
     simulated.firmware.wiring.motor_gain[static_cast<Eigen::Index>(i)] = arm.gain[i];
   }
-  // A linkage that weighs something is simulated in steps of 25 us, which takes ten times as long.
+  // A linkage with weight is simulated in steps of 25 us, which takes ten times as long.
   const bool weighs = long_form() || arm.file.is<driver::DeltaArm>();
   arm.weight = weighs ? random.uniform(0, 0.8) * simulated.plant.coulomb : 0;
   simulated.weight_B = arm.file.R_WB.transpose() * Eigen::Vector3d(0, 0, -arm.weight);
   return arm;
 }
 
-/// Returns the delay of a Falcon's bus from force to motion, s: how many ticks lie between the one
-/// whose message the board answers and the one that sees the answer. The board samples when a
-/// message is complete, which is when its force begins. The tip moves by several counts a tick.
+/// Returns the delay of a Falcon's bus from force to motion, s. It is the number of ticks between
+/// the one whose message the board answers and the one that sees the answer. The board samples when
+/// a message is complete, which is when its force begins. The tip moves by several counts per tick.
 double delay_of_bus(const scene::ArmFile& file) {
   namespace falcon = driver::falcon;
   const Eigen::Vector3d p_BM = falcon::falcon_geometry().p_BM;
@@ -75,24 +76,24 @@ double delay_of_bus(const scene::ArmFile& file) {
                                (*arm)->wire(clock), driver::make_arm(file.protocol, file.model)),
                            scene::device_settings(file, 1000), clock.now_ns());
   EXPECT_TRUE(device.ok());
-  std::vector<std::array<std::int32_t, 3>> answered;  // to the message of each tick
+  std::vector<std::array<std::int32_t, 3>> answered;  // answer to the message of each tick
   int delay = 0;
   for (int k = 0; k < 180; ++k) {
     clock.sleep_until_ns(clock.now_ns() + 1'000'000);
     const auto seen = (*device)->read(clock.now_ns(), clock.now_ns()).counts;
-    answered.push_back((*arm)->arm().truth().counts);  // to that of the tick before
+    answered.push_back((*arm)->arm().truth().counts);  // answer to the message of the previous tick
     (*device)->write({});
     if (k < 150) continue;
     const auto found = std::find(answered.rbegin(), answered.rend(), seen);
     EXPECT_NE(found, answered.rend());
     const int ticks = static_cast<int>(found - answered.rbegin()) + 1;
-    EXPECT_TRUE(delay == 0 || delay == ticks) << "it is the same in each tick";
+    EXPECT_TRUE(delay == 0 || delay == ticks) << "the delay must be the same in each tick";
     delay = ticks;
   }
   return 1e-3 * delay;
 }
 
-/// How often intervals held truths, and how far estimates were off.
+/// Number of intervals that contain the true value, and errors of the estimates.
 struct Scores {
   Score mass{"mass", 0.03}, coulomb{"Coulomb", 0.05}, gain{"gain", 0.02}, delay{"delay", 1e-4};
   int held_weights = 0, held_viscous = 0;
@@ -118,7 +119,7 @@ struct Scores {
     }
     std::printf("weight %d, viscous friction %d of %d intervals\n", held_weights, held_viscous,
                 arms);
-    // Of 8 intervals in the short form one may miss by chance.
+    // One of the 8 intervals in the short form may miss by chance.
     EXPECT_GE(held, long_form() ? 0.9 * all : all - 1);
   }
 };
@@ -151,7 +152,7 @@ TEST(IdentifyBuilds, FindsTheConstantsOfHiddenPolhems) {
   find_hidden_arms("polhem", long_form() ? 30 : 10);
 }
 
-TEST(IdentifyBuilds, NamesAMotorOfAFalconThatIsTurnedRoundOrDead) {
+TEST(IdentifyBuilds, NamesAReversedOrDeadMotorOfAFalcon) {
   for (int motor = 0; motor < 3; ++motor) {
     for (const double gain : {-1.0, 0.0}) {
       HiddenArm arm = hidden_arm_of("falcon", 7);
@@ -180,7 +181,7 @@ TEST(IdentifyBuilds, WritesAFileThatMakesTheHiddenArm) {
     text << std::ifstream(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + name + ".yaml").rdbuf();
     const auto before = scene::load_arm(name);
     std::string written = text.str();
-    // Once a constant stands there, it is exchanged.
+    // An existing constant is replaced.
     for (int round = 0; round < 2; ++round) {
       const auto made = identified_text(written, found, {.date = "2026-11-25", .arm = "A 1"});
       ASSERT_TRUE(made.ok()) << made.error().message;

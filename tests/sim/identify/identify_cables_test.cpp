@@ -24,7 +24,7 @@ using support::kKnownMass;
 using support::long_form;
 using support::Score;
 
-TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
+TEST(IdentifyCables, FindsCablesAndTheLinksBehindThem) {
   const int arms = long_form() ? 20 : 1;
   Score mass{"mass", 0.03}, gain{"gain", 0.02}, delay{"delay", 1e-4}, coulomb{"Coulomb", 0.05};
   Score resonance{"resonance", 0.05}, antiresonance{"antires.", 0.08}, inertia{"motor", 0.06};
@@ -37,8 +37,9 @@ TEST(IdentifyCables, FindsCablesThatStretchAndWhatIsBehindThem) {
                                         .known_mass = kKnownMass,
                                         .seed = seed});
     if (!found) {
-      // Its motor oscillates under the force that holds the tip: nobody sees such a motion well.
-      EXPECT_EQ(found.error().message.find("The joints jumped in"), 0U) << found.error().message;
+      // Its motor oscillates under the force that holds the tip, so the motion cannot be measured.
+      EXPECT_EQ(found.error().message.find("The motion cannot be used: in"), 0U)
+          << found.error().message;
       ++refused;
       continue;
     }
@@ -79,7 +80,7 @@ TEST(IdentifyCables, FindsOrReportsUnseenResonances) {
     const auto found =
         identified(arm, {.seconds = long_form() ? 30.0 : 20.0, .play = long_form(), .seed = seed});
     ASSERT_TRUE(found.ok()) << found.error().message;
-    ASSERT_TRUE(found->constants.cables) << "arm " << k << ": no cables";
+    ASSERT_TRUE(found->constants.cables) << "arm " << k << ": no cables found";
     if (!found->against.empty()) continue;
     const auto sentences = not_identified(*found);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -105,8 +106,8 @@ TEST(IdentifyCables, FindsOrReportsUnseenResonances) {
   EXPECT_LT(worst, 0.05);
 }
 
-TEST(IdentifyCables, AreNotWrittenWhereAHandHoldsTheTip) {
-  // Play is looked for, whose fit has a spring of its own at the tip.
+TEST(IdentifyCables, AreNotWrittenIfAHandHoldsTheTip) {
+  // Backlash is searched for; its fit has a separate spring at the tip.
   const int arms = long_form() ? 12 : 1;
   support::Random random(77);
   for (int k = 0; k < arms; ++k) {
@@ -118,7 +119,7 @@ TEST(IdentifyCables, AreNotWrittenWhereAHandHoldsTheTip) {
     hand.mass = random.uniform(0.005, 0.05);
     const auto found = identified(arm, {.seconds = long_form() ? 30.0 : 12.0, .seed = seed}, true);
     if (!found) {
-      // One that holds firmly: joints do not follow their motors.
+      // A firm hand: joints do not follow their motors.
       EXPECT_NE(found.error().message.find("such as a hand"), std::string::npos)
           << found.error().message;
       continue;
@@ -130,20 +131,20 @@ TEST(IdentifyCables, AreNotWrittenWhereAHandHoldsTheTip) {
   }
 }
 
-TEST(IdentifyCables, SaysFromWhereOnAStretchIsUnseen) {
+TEST(IdentifyCables, ReportsItsDetectionLimit) {
   const auto found = identified(hidden_arm(7), {.seconds = long_form() ? 20.0 : 12.0});
   ASSERT_TRUE(found.ok()) << found.error().message;
   EXPECT_GT(found->lines.unseen_from.minCoeff(), 100);
   const auto sentences = not_identified(*found);
   EXPECT_TRUE(std::any_of(sentences.begin(), sentences.end(), [](const std::string& one) {
-    return one.find("no compliance was seen") != std::string::npos;
+    return one.find("no compliance detected") != std::string::npos;
   }));
   EXPECT_TRUE(std::any_of(sentences.begin(), sentences.end(), [](const std::string& one) {
-    return one.find("Play: not looked for.") == 0;
+    return one.find("Backlash: not searched.") == 0;
   }));
 }
 
-TEST(LineForces, AreOddMultiplesOfWhichNoTwoAreAlikeAndStaySmall) {
+TEST(LineForces, AreDistinctOddMultiplesAndSmall) {
   std::set<long> seen;
   for (int axis = 0; axis < 3; ++axis) {
     for (int line = 0; line < LineForces::kLines; ++line) {

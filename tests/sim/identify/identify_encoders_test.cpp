@@ -1,4 +1,4 @@
-// What reports say of the encoders that they come from.
+// Step and noise of encoders from their reports.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 using support::Random;
 
-/// Returns reports whose counts are off by normal noise of `rms` (counts), before they are rounded.
+/// Returns reports whose counts have normal noise of `rms` (counts) before rounding.
 std::vector<std::array<std::int32_t, 3>> noisy(double rms, double drift, std::uint64_t seed) {
   Random random(seed);
   std::vector<std::array<std::int32_t, 3>> counts(1000);
@@ -29,7 +29,7 @@ std::vector<std::array<std::int32_t, 3>> noisy(double rms, double drift, std::ui
 
 TEST(EncoderNoise, IntervalContainsTheTrueNoise) {
   constexpr double kRms = 1.5;
-  const double truth = std::hypot(kRms, std::sqrt(1.0 / 12));  // rounding is evenly spread
+  const double truth = std::hypot(kRms, std::sqrt(1.0 / 12));  // rounding errors are uniform
   int held = 0, all = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const EncoderRest rest = noise_at_rest(noisy(kRms, 0, seed));
@@ -55,12 +55,12 @@ TEST(EncoderNoise, NeedsAJointThatRestsWithChangingCounts) {
   EXPECT_FALSE(noise_at_rest({}).at_rest[0]);
 }
 
-TEST(EncoderStep, IsTheSmallestDifferenceThatIsNoMisreadCount) {
+TEST(EncoderStep, IgnoresMisreadCounts) {
   ArmMotion motion;
   motion.step = {1e-4, 1e-4, 1e-4};
   for (int k = 0; k < 400; ++k) {
     MotionSample sample;
-    sample.fresh = k % 3 != 0;  // others repeat what was
+    sample.fresh = k % 3 != 0;  // the others repeat the previous report
     const double way = 40 * std::sin(0.05 * k);
     sample.q = {1e-4 * std::round(way), 4e-4 * std::round(way / 4), 0};
     if (k == 200) sample.q[1] += 1e-4;
@@ -73,7 +73,7 @@ TEST(EncoderStep, IsTheSmallestDifferenceThatIsNoMisreadCount) {
   EXPECT_EQ(step[2].counts, 0);
 }
 
-TEST(Encoders, OfASimulatedArmCountByOnesAndAreQuietAtRest) {
+TEST(Encoders, SimulatedOnesCountByOneAndAreQuietAtRest) {
   const auto found =
       support::identified(support::hidden_arm(4), {.seconds = 10, .link = true, .seed = 4});
   ASSERT_TRUE(found.ok()) << found.error().message;

@@ -1,5 +1,5 @@
-// What is looked for beside the constants of the arm file: friction by axis and direction, and
-// amplifiers that saturate.
+// Properties beyond the constants of the arm file: friction by axis and direction, and amplifiers
+// that saturate.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,9 +21,9 @@ using support::kKnownMass;
 using support::long_form;
 using support::Random;
 
-TEST(IdentifyFriction, IsToldInBothDirectionsWhereItDiffers) {
-  // c+ one way and c- the other is to the last bit their mean and a constant force of half their
-  // difference, so that is how such an arm is simulated.
+TEST(IdentifyFriction, IsReportedForDirectionsThatDiffer) {
+  // Friction c+ in one direction and c- in the other equals exactly their mean plus a constant
+  // force of half their difference. The arm is simulated in that form.
   const int arms = long_form() ? 60 : 1;
   int told = 0, held = 0, all = 0;
   double worst = 0;
@@ -37,7 +37,7 @@ TEST(IdentifyFriction, IsToldInBothDirectionsWhereItDiffers) {
       const double share = random.uniform(0.1, 0.4);
       uneven_W[axis] = (random.bits() % 2 == 0 ? 1 : -1) * share * coulomb;
     }
-    // Nothing else pulls, so that the tip stays where it is put.
+    // Nothing else pulls, so the tip stays in place.
     arm.file.simulated.weight_B = arm.file.R_WB.transpose() * uneven_W;
     const auto found = identified(
         arm, {.seconds = long_form() ? 30.0 : 15.0, .known_mass = kKnownMass, .seed = seed});
@@ -53,21 +53,21 @@ TEST(IdentifyFriction, IsToldInBothDirectionsWhereItDiffers) {
       ++all;
     }
   }
-  std::printf("%d of %d arms told; worst %.3g of the friction; %d of %d intervals hold\n", told,
+  std::printf("%d of %d arms reported; worst %.3g of the friction; %d of %d intervals hold\n", told,
               arms, worst, held, all);
   EXPECT_EQ(told, arms);
   EXPECT_LT(worst, 0.05);
   EXPECT_GT(held, 0.85 * all);
 }
 
-TEST(IdentifySaturation, NamesTheMotorThatGivesTooLittle) {
+TEST(IdentifySaturation, NamesTheSaturatedMotor) {
   const int arms = long_form() ? 30 : 1;
   int held = 0, all = 0;
   double worst = 0;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(13'000 + k);
     HiddenArm arm = hidden_arm(seed);
-    // Half of what is asked of the first motor at the most.
+    // Half of the largest torque requested from the first motor.
     const auto& first = arm.file.model.drives[0];
     arm.file.simulated.motors.current_max = 0.07 / std::abs(first.ratio * first.torque_constant);
     const auto found = identified(arm, {.seconds = 12, .seed = seed});
@@ -88,11 +88,11 @@ TEST(IdentifySaturation, NamesTheMotorThatGivesTooLittle) {
     }
     EXPECT_GE(seen, 1);
     ASSERT_FALSE(found->against.empty());
-    EXPECT_NE(found->against.front().find("gives no more than"), std::string::npos);
+    EXPECT_NE(found->against.front().find("gives at most"), std::string::npos);
   }
   std::printf("worst %.3g, %d of %d intervals hold\n", worst, held, all);
   EXPECT_LT(worst, 0.12);
-  // Of three intervals one may miss by chance.
+  // One of three intervals may miss by chance.
   EXPECT_GE(held, std::min(0.85 * all, all - 1.0));
 }
 

@@ -1,4 +1,4 @@
-// Arms whose reports and messages come late by chance, and a computer whose ticks do.
+// Arms whose reports and messages are randomly late, and a computer whose ticks are.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,16 +17,16 @@ using support::hidden_arm_of;
 using support::HiddenArm;
 using support::identified;
 
-/// A hidden arm whose wire has jitter (s) on both ways.
+/// Returns a hidden arm whose wire has jitter (s) in both directions.
 HiddenArm with_jitter(std::uint64_t seed, double jitter) {
   constexpr std::array kNames = {"vintage_phantom", "woodenhaptics_teensy", "polhem"};
   HiddenArm arm = hidden_arm_of(scene::load_arm(kNames[seed % kNames.size()]).value(), seed);
   arm.file.simulated.wire.jitter_ns = std::llround(1e9 * jitter);
-  arm.delay += jitter;  // in the mean: half of it each way
+  arm.delay += jitter;  // mean value: half of it in each direction
   return arm;
 }
 
-/// Identifies an arm behind a jitter (s), and compares what was found with what is true.
+/// Identifies an arm behind a jitter (s), and compares the result with the true values.
 void expect_found(std::uint64_t seed, double jitter) {
   SCOPED_TRACE(std::to_string(seed) + ", " + std::to_string(1e6 * jitter) + " us");
   const HiddenArm arm = with_jitter(seed, jitter);
@@ -45,7 +45,7 @@ void expect_found(std::uint64_t seed, double jitter) {
 TEST(IdentifyJitter, FindsArmsBehindJitter) {
   if (!support::long_form()) {
     for (const double jitter : {5e-6, 1e-4, 5e-4}) expect_found(3, jitter);
-    expect_found(4, 5e-6);  // a WoodenHaptics, whose motors are tried in many pushes
+    expect_found(4, 5e-6);  // a WoodenHaptics, whose motors are probed with many pushes
     return;
   }
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
@@ -80,7 +80,7 @@ TEST(IdentifyLateTicks, AreNamedAsTheCause) {
     };
     const std::atomic<bool> never{false};
     const auto found = identify(open, file, {.seconds = 10}, never);
-    // A few late ticks spoil nothing; where they do, nothing else is blamed.
+    // A few late ticks do no harm; if they do, they are reported as the cause.
     if (found.ok() && found->against.empty()) continue;
     const std::string said = found.ok() ? found->against.front() : found.error().message;
     EXPECT_EQ(said.rfind("The computer was late in ", 0), 0u) << every << ": " << said;

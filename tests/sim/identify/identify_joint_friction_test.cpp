@@ -1,5 +1,5 @@
-// Friction of single joints, on the motor's side of cables that stretch: found beside the friction
-// of the tip, with its intervals, and none where there is none.
+// Friction of single joints, on the motor's side of cables that stretch. It is found in addition to
+// the friction of the tip, with intervals, and not reported where there is none.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,11 +26,12 @@ using support::leaves_open;
 using support::long_form;
 using support::Score;
 
-// About which friction of a joint is drawn: 6.3 mN m, 50 mN at the tip, as much as that of the tip
-// itself; of the viscous ten times what the tip has there [chosen].
+// Central values of the drawn friction of a joint. 6.3 mN m is 50 mN at the tip, as much as that of
+// the tip itself; the viscous friction is ten times that of the tip there [chosen].
 constexpr double kRubs = 6.3e-3, kRubsViscous = 1e-3;
 
-/// A vintage PHANTOM behind cables that stretch, whose motors rub by 1/3 to 3 times these.
+/// Returns a vintage PHANTOM behind cables that stretch, whose motors have 1/3 to 3 times this
+/// friction.
 HiddenArm rubbing_arm(std::uint64_t seed) {
   HiddenArm arm = cabled_arm(seed);
   support::Random random(seed + 2000);
@@ -40,7 +41,7 @@ HiddenArm rubbing_arm(std::uint64_t seed) {
   return arm;
 }
 
-TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
+TEST(IdentifyJointFriction, IsFoundForEachJointInAdditionToTheTip) {
   const int arms = long_form() ? 40 : 1;
   Score dry{"dry", 0.05}, viscous{"viscous", 0.25}, tip{"tip", 0.05}, gain{"gains", 0.02};
   Score mass{"mass", 0.03}, motor{"motor", 0.06}, stiffness{"cable", 0.06};
@@ -58,13 +59,13 @@ TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
       std::printf("arm %d: %s\n", k,
                   !found                    ? found.error().message.c_str()
                   : !found->against.empty() ? found->against.front().c_str()
-                                            : "no friction was seen");
+                                            : "no friction detected");
       continue;
     }
     EXPECT_FALSE(found->play.seen) << "arm " << k;
     const auto& train = arm.file.simulated.drive_train;
     const ArmConstants& constants = found->constants;
-    // Motion alone shows no mass: the gains' mean is taken to be one.
+    // Motion without a known mass does not show the scale, so the mean gain is assumed to be 1.
     const double mean = weighed ? 1 : std::cbrt(arm.gain[0] * arm.gain[1] * arm.gain[2]);
     if (weighed) mass.add(constants.mass, arm.file.simulated.plant.mass);
     tip.add(constants.coulomb, arm.file.simulated.plant.coulomb / mean);
@@ -84,8 +85,8 @@ TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
       }
     }
   }
-  // Of intervals of 95 % one in fifty may miss by more than that as well: an arm whose search ended
-  // beside the truth, which nothing tells (one of 39 does).
+  // One in fifty intervals of 95 % may miss by more than that: an arm whose search ended in a wrong
+  // minimum, which cannot be detected (one of 39 does).
   constexpr double kMissed = 0.02;
   for (const Score* score : {&mass, &tip, &dry, &viscous, &gain, &motor, &stiffness, &resonance}) {
     score->tell();
@@ -96,7 +97,7 @@ TEST(IdentifyJointFriction, IsFoundForEachJointBesideThatOfTheTip) {
   EXPECT_LE(refused, arms / 10);
 }
 
-TEST(IdentifyJointFriction, IsNotInventedWhereMotorsTurnFreely) {
+TEST(IdentifyJointFriction, IsNotReportedForFreeMotors) {
   const int arms = long_form() ? 40 : 0;
   int told = 0;
   double most = 0;
@@ -110,8 +111,8 @@ TEST(IdentifyJointFriction, IsNotInventedWhereMotorsTurnFreely) {
     EXPECT_FALSE(found->play.friction.seen) << "arm " << k;
     if (!found->play.friction.fits) continue;
     ++told;
-    EXPECT_TRUE(
-        leaves_open(*found, "Dry friction of joints beside that of the tip: none seen above"))
+    EXPECT_TRUE(leaves_open(
+        *found, "Dry friction of joints in addition to that of the tip: none detected above"))
         << "arm " << k;
     for (const Estimate& one : found->play.friction.coulomb) {
       most = std::max(most, one.value + one.plus_minus);
@@ -133,16 +134,16 @@ TEST(IdentifyJointFriction, IsWrittenWithItsInterval) {
       some->find("    coulomb: [0, 0, 0.00625]  # N m at the joints [I 2026-11-26, sim, +- 0, "
                  "0, 0.0002]"),
       std::string::npos);
-  // The tip's own viscous friction stands there alone.
+  // Only the viscous friction of the tip is written there.
   EXPECT_EQ(some->find("viscous: ["), std::string::npos);
-  // Measured again, without any: the old friction must not stay.
+  // A second measurement without friction must remove the old value.
   (*found.cables)[2].coulomb = {};
   const auto again = identified_text(*some, found, mark);
   ASSERT_TRUE(again.ok()) << again.error().message;
   EXPECT_NE(again->find("coulomb: [0, 0, 0]"), std::string::npos);
 }
 
-TEST(IdentifyJointFriction, NamesTheJointOfMostFriction) {
+TEST(IdentifyJointFriction, NamesTheJointWithHighFriction) {
   Identified found;
   found.play.searched = found.play.fits = true;
   found.play.friction.fits = found.play.friction.seen = true;
@@ -152,13 +153,14 @@ TEST(IdentifyJointFriction, NamesTheJointOfMostFriction) {
   found.constants.cables.emplace();
   auto& cables = *found.constants.cables;
   for (CableConstants& cable : cables) cable.coulomb = {0.002, 1e-4};
-  EXPECT_EQ(fit_text(found).find("rubs far more"), std::string::npos);
+  EXPECT_EQ(fit_text(found).find("has far more friction"), std::string::npos);
   cables[1].coulomb.value = 0.02;
-  EXPECT_NE(fit_text(found).find("Joint 2 rubs far more"), std::string::npos) << fit_text(found);
-  EXPECT_TRUE(leaves_open(found, "Dry friction of a joint by direction: not told."));
-  // As little as the tip has is nothing to look after.
+  EXPECT_NE(fit_text(found).find("Joint 2 has far more friction"), std::string::npos)
+      << fit_text(found);
+  EXPECT_TRUE(leaves_open(found, "Dry friction of a joint by direction: not identified."));
+  // Friction as small as that of the tip is not reported.
   found.constants.coulomb.value = 0.2;
-  EXPECT_EQ(fit_text(found).find("rubs far more"), std::string::npos);
+  EXPECT_EQ(fit_text(found).find("has far more friction"), std::string::npos);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What links take of force, in the weak form, against bodies whose equations of motion come out of
-// their places and turns alone (support/identify/rigid_links.h).
+// Forces of links in the weak form, compared with rigid bodies whose equations of motion are
+// derived only from their positions and rotations (support/identify/rigid_links.h).
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -20,11 +20,11 @@ using support::LinkBody;
 using support::RigidLinks;
 using Index = LinkEquations::Index;
 
-const Eigen::Vector3d kGravity(1.2, -2.1, -9.4);  // of a base that stands aslant, m/s^2
+const Eigen::Vector3d kGravity(1.2, -2.1, -9.4);  // gravity in a tilted base, m/s^2
 const driver::SerialArm kSomeArm{.height = 0.02, .length_b = 0.138, .length_c = 0.112};
 
-/// Joint angles over time: some 10 degrees to and fro at 1 to 3 Hz, as fast as while an arm is
-/// identified. Far from the symmetric pose, so that no term is small by chance.
+/// Returns joint angles over time: about 10 degrees back and forth at 1 to 3 Hz, as fast as in an
+/// identification. They are far from the symmetric pose, so that no term is small by chance.
 Eigen::Vector3d angles_at(double t) {
   return {0.3 + 0.15 * std::sin(9 * t), 1.2 + 0.16 * std::sin(13 * t + 1),
           0.5 + 0.14 * std::sin(17 * t + 2)};
@@ -47,8 +47,8 @@ ArmMotion links_motion() {
   return motion;
 }
 
-/// The force along an axis that bodies take, a mean over an equation's bump, with derivatives by
-/// time from the exact angles.
+/// Returns the force of the bodies along an axis, averaged over an equation's bump, with time
+/// derivatives of the exact angles.
 double taken(const RigidLinks& links, const ArmMotion& motion,
              const MotionEquations::Equation& equation) {
   constexpr double h = 1e-4;
@@ -67,8 +67,8 @@ double taken(const RigidLinks& links, const ArmMotion& motion,
   return sum / area;
 }
 
-/// Expects that forces by rows are those that bodies take, to a share of the largest, along each
-/// axis.
+/// Expects that the forces from rows equal those of the bodies along each axis, within a share of
+/// the largest.
 void expect_equal(
     const RigidLinks& links,
     const std::function<double(const LinkEquations&, const MotionEquations::Equation&)>& by_row,
@@ -89,10 +89,10 @@ void expect_equal(
   EXPECT_GT(most, 0) << name;
 }
 
-constexpr double kGravityConstant = 9.80665;  // which a row takes for gravity, m/s^2
+constexpr double kGravityConstant = 9.80665;  // gravity in a row, m/s^2
 
 TEST(LinkEquations, EachConstantMatchesLagrange) {
-  // Gravity of a row's own size.
+  // Gravity scaled to the value of a row.
   const Eigen::Vector3d gravity = kGravityConstant * kGravity.normalized();
   const double along = 0.6;
   struct One {
@@ -107,7 +107,7 @@ TEST(LinkEquations, EachConstantMatchesLagrange) {
       {at(2), "inertia C", {.turns_with_c = true, .pitch = 1}},
       {LinkEquations::kYawB, "yaw_b", {.third = 1}},
       {LinkEquations::kYawC, "yaw_c", {.turns_with_c = true, .third = 1}},
-      // What its mass moves with is taken off again.
+      // The effect of its mass is subtracted again.
       {LinkEquations::kMomentB,
        "moment_b",
        {.mass = 1 / along, .along_b = along, .pitch = -along, .third = -along}}};
@@ -121,9 +121,9 @@ TEST(LinkEquations, EachConstantMatchesLagrange) {
   }
 }
 
-TEST(LinkEquations, WithMassAndWeightAtTheTipAreThoseOfAnyLinks) {
-  // Coupling and moment_c are in no column: mass and weight at the tip and the other columns say
-  // the same.
+TEST(LinkEquations, ExpressAnyLinksWithMassAndWeightAtTheTip) {
+  // Coupling and moment_c have no column: mass and weight at the tip and the other columns express
+  // them.
   const Eigen::Vector3d gravity = kGravityConstant * kGravity.normalized();
   const RigidLinks links = support::desk_links(kSomeArm, 1, gravity);
   const device_sim::LinkSettings all = links.settings();
@@ -143,7 +143,7 @@ TEST(LinkEquations, WithMassAndWeightAtTheTipAreThoseOfAnyLinks) {
       "desk links");
 }
 
-TEST(LinkEquations, GiveAMotionThatKnowsItsLinksTheForcePerMass) {
+TEST(LinkEquations, KnownLinksAddTheirForcePerMass) {
   const RigidLinks links =
       support::desk_links(kSomeArm, 1, kGravityConstant * kGravity.normalized());
   LinkEquations::Row constants;
@@ -161,7 +161,7 @@ TEST(LinkEquations, GiveAMotionThatKnowsItsLinksTheForcePerMass) {
   }
 }
 
-TEST(LinkEquations, AtTheTipAreTheMassMatrixOfTheirBodies) {
+TEST(LinkEquations, MassMatrixAtTheTipMatchesTheBodies) {
   const ArmMotion motion = links_motion();
   const RigidLinks links({{.axial = 2e-4, .pitch = 3e-4, .third = 5e-4},
                           {.turns_with_c = true, .axial = 1e-4, .pitch = 4e-4, .third = 7e-4}},

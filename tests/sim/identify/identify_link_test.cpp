@@ -1,4 +1,4 @@
-// How an arm's reports come, and when its firmware switches the motors off.
+// Timing of an arm's reports, and time of its firmware's watchdog.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ ReportTiming timed(const scene::ArmFile& file) {
   return time_reports(**bench, 2, never);
 }
 
-TEST(ReportTiming, IsThatOfTheSimulatedWire) {
+TEST(ReportTiming, MatchesTheSimulatedWire) {
   scene::ArmFile file = scene::load_arm("vintage_phantom").value();
   for (const double period_ms : {1.0, 1.25, 2.0}) {
     file.simulated.firmware.report_period_ns = static_cast<std::int64_t>(1e6 * period_ms);
@@ -37,7 +37,7 @@ TEST(ReportTiming, IsThatOfTheSimulatedWire) {
       const ReportTiming timing = timed(file);
       SCOPED_TRACE(std::to_string(period_ms) + " ms, " + std::to_string(spread_ms));
       EXPECT_NEAR(timing.period.value, 1e-3 * period_ms, timing.period.plus_minus + 1e-9);
-      // Evenly spread over `spread_ms`.
+      // Uniform over `spread_ms`.
       const double jitter = 1e-3 * spread_ms / std::sqrt(12.0);
       EXPECT_NEAR(timing.jitter.value, jitter, 1.5 * timing.jitter.plus_minus + 1e-9);
       EXPECT_LE(timing.jitter.plus_minus, 0.1 * jitter + 2e-9);
@@ -47,7 +47,7 @@ TEST(ReportTiming, IsThatOfTheSimulatedWire) {
   }
 }
 
-TEST(ReportTiming, CountsReportsThatAreMissing) {
+TEST(ReportTiming, CountsMissingReports) {
   scene::ArmFile file = scene::load_arm("vintage_phantom").value();
   file.simulated.wire.loss = 0.1;
   const ReportTiming timing = timed(file);
@@ -57,14 +57,14 @@ TEST(ReportTiming, CountsReportsThatAreMissing) {
   EXPECT_NEAR(timing.period.value, 1e-3, 1e-6);
 }
 
-TEST(ReportTiming, SaysWhereLateAndMissingCannotBeToldApart) {
+TEST(ReportTiming, ReportsAmbiguityOfLateAndMissingReports) {
   scene::ArmFile file = scene::load_arm("vintage_phantom").value();
   file.simulated.wire.jitter_ns = 3'000'000;
   EXPECT_TRUE(timed(file).blurred);
   EXPECT_EQ(timing_of({0, 0.001, 0.002}).period.value, 0);
 }
 
-TEST(WatchdogTime, IsFoundOnAFreeTipByThePushesOfIdentifying) {
+TEST(WatchdogTime, IsMeasuredOnAFreeTip) {
   int held = 0, all = 0;
   for (const double watchdog_ms : {100.0, 60.0, 130.0}) {
     if (!long_form() && watchdog_ms != 100) break;
@@ -75,7 +75,7 @@ TEST(WatchdogTime, IsFoundOnAFreeTipByThePushesOfIdentifying) {
       ASSERT_TRUE(found.ok()) << found.error().message;
       ASSERT_TRUE(found->watchdog.has_value());
       if (!found->watchdog->known()) {
-        // Later than the file says, a light arm has gone too far before.
+        // If the watchdog is later than the file says, a light arm has moved too far before.
         EXPECT_EQ(found->watchdog->last.end, WatchdogEnd::kStillOn);
         EXPECT_GT(watchdog_ms, 100);
         continue;
@@ -90,13 +90,14 @@ TEST(WatchdogTime, IsFoundOnAFreeTipByThePushesOfIdentifying) {
   EXPECT_GE(held, 0.8 * all);
 }
 
-TEST(WatchdogTime, PushesNoMoreThanItSaysAndNotOutsideTheWorkspace) {
+TEST(WatchdogTime, PushesStayWithinForceLimitAndWorkspace) {
   for (std::uint64_t seed = 1; seed <= (long_form() ? 40 : 4); ++seed) {
     support::Random random(seed);
     HiddenArm arm = hidden_arm(seed);
     scene::ArmFile& file = arm.file;
     file.simulated.hand = {};
-    // Beside the side that the first push goes to, or with friction that is not there.
+    // The tip is next to the side towards which the first push goes, or the assumed friction is
+    // wrong.
     Eigen::Vector3d p_W = file.workspace.middle();
     const bool near = seed % 2 == 0;
     if (near) p_W.y() = file.workspace.max_W.y() - random.uniform(0.001, 0.02);
@@ -124,13 +125,13 @@ TEST(WatchdogTime, PushesNoMoreThanItSaysAndNotOutsideTheWorkspace) {
     EXPECT_EQ(outside, 0);
     EXPECT_EQ(found.last.end == WatchdogEnd::kNoRoom, near);
     EXPECT_TRUE((*bench)->device().zero_assured());
-    // It was let go at 15 mm; what it goes on is its own.
+    // It was released at 15 mm; the rest of the motion is without force.
     const Eigen::Vector3d gone = (*bench)->device().state().p_WT - p_W;
     EXPECT_LT(gone.norm(), 0.03);
   }
 }
 
-TEST(WatchdogTime, SaysWhyItIsNotKnown) {
+TEST(WatchdogTime, ReportsWhyItIsUnknown) {
   const auto sentence_of = [](WatchdogEnd end) {
     Identified found;
     found.reports = ReportTiming{};
@@ -142,7 +143,7 @@ TEST(WatchdogTime, SaysWhyItIsNotKnown) {
     return std::string();
   };
   EXPECT_NE(sentence_of(WatchdogEnd::kStillOn).find("still on 150 ms"), std::string::npos);
-  EXPECT_NE(sentence_of(WatchdogEnd::kAnswersOnly).find("only when spoken to"), std::string::npos);
+  EXPECT_NE(sentence_of(WatchdogEnd::kAnswersOnly).find("only on request"), std::string::npos);
   EXPECT_NE(sentence_of(WatchdogEnd::kTooLong).find("feel-check"), std::string::npos);
   EXPECT_NE(sentence_of(WatchdogEnd::kNoRoom).find("side of the workspace"), std::string::npos);
 }

@@ -1,5 +1,5 @@
-// Links that were seen: what is written of them, and that a twin of the new file has the mass of
-// its arm where one of a file without them has not.
+// Detected links: their keys in the new file, and a twin whose mass is correct where that of a file
+// without links is not.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -47,7 +47,7 @@ scene::ArmFile file_of(const std::string& text) {
   return scene::read_arm(*yaml).value();
 }
 
-/// A fit that knows an arm exactly, in the form in which motion shows it.
+/// Returns the exact fit of an arm, in the form in which motion shows it.
 LinkFit exact_fit(const HiddenArm& arm) {
   const auto& links = arm.file.simulated.links;
   LinkFit fit;
@@ -66,7 +66,7 @@ LinkFit exact_fit(const HiddenArm& arm) {
   return fit;
 }
 
-TEST(LinkConstants, AreAnArmThatMovesAsTheSeenOne) {
+TEST(LinkConstants, ReproduceTheApparentMasses) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     const HiddenArm arm = linked_arm(seed);
@@ -92,7 +92,7 @@ TEST(LinkConstants, AreAnArmThatMovesAsTheSeenOne) {
         const auto axis = static_cast<Eigen::Index>(i);
         EXPECT_NEAR(fit.apparent_mass(q)[i].value, truth(axis, axis), 1e-9);
       }
-      // What gravity pulls with, at the tip.
+      // Force of gravity at the tip.
       const Eigen::Matrix3d G = fit.arm.jacobian(q).inverse();
       const auto pull = [&](const device_sim::LinkSettings& of, const Eigen::Vector3d& tip) {
         return Eigen::Vector3d(
@@ -104,7 +104,7 @@ TEST(LinkConstants, AreAnArmThatMovesAsTheSeenOne) {
                     .norm(),
                 1e-9);
     }
-    // A little less coupling, where there is some, and no links are so.
+    // With slightly less coupling (if there is some) no physical links exist.
     if (links.coupling == 0) continue;
     const double less = 1e-3 * found->mass.value, lb = fit.arm.length_b, lc = fit.arm.length_c;
     links.coupling -= less * lb * lc;
@@ -115,11 +115,11 @@ TEST(LinkConstants, AreAnArmThatMovesAsTheSeenOne) {
   }
 }
 
-TEST(LinkConstants, AreRefusedWhereNoLinksAreSo) {
+TEST(LinkConstants, ImpossibleLinksAreRefused) {
   LinkFit fit = exact_fit(linked_arm(1));
   fit.theta[LinkFit::kInertia] = -1e-3;
-  EXPECT_TRUE(support::refuses(tip_and_links(fit, {0, 0, -1}), "below zero in some pose"));
-  // Unless it is not told from none.
+  EXPECT_TRUE(support::refuses(tip_and_links(fit, {0, 0, -1}), "negative in some pose"));
+  // Unless it does not differ significantly from zero.
   fit.theta[LinkFit::kInertia] = -1e-6;
   fit.covariance(LinkFit::kInertia, LinkFit::kInertia) = 1e-10;
   const auto found = tip_and_links(fit, {0, 0, -1});
@@ -127,8 +127,8 @@ TEST(LinkConstants, AreRefusedWhereNoLinksAreSo) {
   EXPECT_EQ(found->links.inertia[0].value, 0);
 }
 
-/// How far (m) a tip goes in 80 ms that is pushed along an axis of the world at a place, in a
-/// simulated arm whose motors are as its file says.
+/// Returns the distance (m) that a tip moves in 80 ms under a push along an axis of the world at a
+/// place. The arm is simulated with the motors of its file.
 double pushed_way(scene::ArmFile file, const Eigen::Vector3d& p_W, int axis) {
   file.simulated.hand = {};
   file.simulated.firmware.wiring.motor_gain.setOnes();
@@ -167,13 +167,14 @@ TEST(IdentifiedLinks, ImproveTheTwinAtTheWorkspaceEdge) {
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_NEAR(constants.gain[i].value / arm.gain[i], 1, 0.01);
     }
-    EXPECT_NE(constants_table(*found, arm.file).find("Over the workspace"), std::string::npos);
+    EXPECT_NE(constants_table(*found, arm.file).find("Over the part of the workspace"),
+              std::string::npos);
     const auto text = identified_text(phantom_text(), constants, kLinksMark);
     ASSERT_TRUE(text.ok()) << text.error().message;
     const scene::ArmFile with = file_of(*text);
     scene::ArmFile without = with;
     without.simulated.links = {};
-    // The mass that a motion in one place tells, with the scale of the truth.
+    // Mass identified from a motion in one place, with the true scale.
     const auto alone = identified(arm, {.seconds = 10, .seed = seed});
     ASSERT_TRUE(alone.ok()) << alone.error().message;
     without.simulated.plant.mass =
@@ -217,7 +218,7 @@ ArmConstants constants_with_links() {
   return found;
 }
 
-TEST(IdentifiedLinks, StandInTheNewFileMarked) {
+TEST(IdentifiedLinks, AreWrittenWithMarks) {
   ArmConstants found = constants_with_links();
   const auto added = identified_text(phantom_text(), found, kLinksMark);
   ASSERT_TRUE(added.ok()) << added.error().message;
@@ -233,7 +234,7 @@ TEST(IdentifiedLinks, StandInTheNewFileMarked) {
   EXPECT_EQ(links_in(*added).coupling, 1e-4);
   EXPECT_EQ(links_in(*added).moment_b, -2e-4);
   EXPECT_EQ(links_in(*added).moment_c, -1e-4);
-  // A file that names links gets those that were measured, whatever form it has.
+  // A file that names links gets the measured ones, whatever its form.
   found.links->inertia[0].value = 7e-4;
   const auto again = identified_text(*added, found, kLinksMark);
   ASSERT_TRUE(again.ok()) << again.error().message;
@@ -253,23 +254,23 @@ TEST(IdentifiedLinks, StandInTheNewFileMarked) {
   EXPECT_EQ(links_in(*more).moment_b, -2e-4);
 }
 
-TEST(IdentifiedLinks, OfAFileThatNamesSomeAreMeasuredOrItIsRefused) {
+TEST(IdentifiedLinks, FileWithLinksNeedsAMeasurementOfThem) {
   ArmConstants found = constants_with_links();
   std::string named = phantom_text();
   named.insert(named.find("  tip:\n"), "  links:\n    inertia: [0.0003, 0.0002, 0.0001]\n");
-  // Looked for, and none seen.
+  // Searched for, and none detected.
   found.links.reset();
   const auto none = identified_text(named, found, kLinksMark);
   ASSERT_TRUE(none.ok()) << none.error().message;
   EXPECT_FALSE(file_of(*none).simulated.links.named());
-  // Of a file without that section nothing is added then.
+  // Then no section is added to a file without one.
   EXPECT_EQ(identified_text(phantom_text(), found, kLinksMark).value().find("links:"),
             std::string::npos);
   found.links_sought = false;
   EXPECT_TRUE(support::refuses(identified_text(named, found, kLinksMark), "--places"));
 }
 
-TEST(IdentifiedLinks, AreNotInventedForAnArmWithout) {
+TEST(IdentifiedLinks, AreNotReportedForAnArmWithoutLinks) {
   for (std::uint64_t seed = 7300; seed < (long_form() ? 7310u : 7301u); ++seed) {
     const HiddenArm arm = support::hidden_arm(seed);
     const auto found =
@@ -280,7 +281,7 @@ TEST(IdentifiedLinks, AreNotInventedForAnArmWithout) {
     EXPECT_FALSE(found->constants.links);
     const auto open = not_identified(*found);
     EXPECT_TRUE(std::any_of(open.begin(), open.end(), [](const std::string& one) {
-      return one.find("Links: none seen; over 6 places") == 0;
+      return one.find("Links: none detected; over 6 places") == 0;
     }));
     const double mean = std::cbrt(arm.gain[0] * arm.gain[1] * arm.gain[2]);
     const double mass = arm.file.simulated.plant.mass / mean;

@@ -1,4 +1,4 @@
-// Links of a serial arm, by its motion at several places.
+// Links of a serial arm from its motion at several places.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ using support::linked_arm;
 using support::long_form;
 using support::tip_masses;
 
-/// Fits what `thimble` sees of an arm that moves at several places.
+/// Fits the recorded motions of an arm at several places.
 driver::Result<LinkFit> fitted(const HiddenArm& arm, std::uint64_t seed, double seconds, int places,
                                double force_most = kIdentifyForceMax) {
   const std::atomic<bool> never{false};
@@ -48,8 +48,8 @@ driver::Result<LinkFit> fitted(const HiddenArm& arm, std::uint64_t seed, double 
   return fit_links(std::get<driver::SerialArm>(arm.file.model.geometry), *motions);
 }
 
-/// Adds apparent masses at places that no motion was about, over the whole workspace. `range`: the
-/// least and the most of them.
+/// Adds errors of the apparent mass at places without motion, over the whole workspace. `range`:
+/// min. and max. mass.
 void look_between(const HiddenArm& arm, const LinkFit& found, double scale, std::uint64_t seed,
                   support::Score& score, std::pair<double, double>& range) {
   support::Random random(seed + 900);
@@ -78,11 +78,11 @@ double mean_of_gains(const HiddenArm& arm) {
   return std::cbrt(arm.gain[0] * arm.gain[1] * arm.gain[2]);
 }
 
-TEST(IdentifyPlaces, FindsTheMassOfHiddenArmsWhereTheyHaveNotBeen) {
+TEST(IdentifyPlaces, FindsTheMassAtUnvisitedPlaces) {
   support::Score score{"mass", 0.03};
   int held_places = 0, all_places = 0;
-  // The last ones are four times as heavy: up to a kilogram, which 1 N hardly moves, so that the
-  // steps of the encoders count.
+  // The last arms are four times as heavy: up to a kilogram, which 1 N hardly moves, so encoder
+  // steps matter.
   const std::uint64_t first = long_form() ? 7000 : 7021, end = long_form() ? 7040 : 7022;
   for (std::uint64_t seed = first; seed < end; ++seed) {
     SCOPED_TRACE(seed);
@@ -96,16 +96,16 @@ TEST(IdentifyPlaces, FindsTheMassOfHiddenArmsWhereTheyHaveNotBeen) {
     EXPECT_TRUE(found->links) << found->better;
     support::Score one{"mass", 0.03};
     std::pair<double, double> range;
-    // Without a known mass the gains' mean is the scale.
+    // Without a known mass the mean gain sets the scale.
     look_between(arm, *found, 1 / mean_of_gains(arm), seed, one, range);
-    EXPECT_GT(range.second, 1.5 * range.first) << "these links change nothing";
+    EXPECT_GT(range.second, 1.5 * range.first) << "the links of this arm have no effect";
     std::printf("%d: %.3g to %.3g kg, worst %.3g, %d of %d, explained %.5f, better %.3g\n",
                 static_cast<int>(seed), range.first, range.second, one.worst, one.held, one.all,
                 found->explained, found->better);
     score.worst = std::max(score.worst, one.worst);
     score.held += one.held;
     score.all += one.all;
-    // What was seen at each place alone is what the constants say.
+    // The mass measured at each place agrees with the constants.
     EXPECT_EQ(found->places.size(), 7U);
     for (const LinkFit::Place& place : found->places) {
       for (const Estimate& seen : place.seen) {
@@ -122,7 +122,7 @@ TEST(IdentifyPlaces, FindsTheMassOfHiddenArmsWhereTheyHaveNotBeen) {
   EXPECT_GE(held_places, 0.85 * all_places);
 }
 
-TEST(IdentifyPlaces, SaysThatAnArmWithoutLinksHasOneMass) {
+TEST(IdentifyPlaces, ReportsOneMassForAnArmWithoutLinks) {
   for (std::uint64_t seed = 7100; seed < (long_form() ? 7120u : 7101u); ++seed) {
     SCOPED_TRACE(seed);
     const HiddenArm arm = hidden_arm(seed);
@@ -138,13 +138,13 @@ TEST(IdentifyPlaces, SaysThatAnArmWithoutLinksHasOneMass) {
   }
 }
 
-TEST(IdentifyPlaces, KeepToTheForceThatTheUserAllows) {
+TEST(IdentifyPlaces, FitWithALowerForceLimit) {
   const HiddenArm arm = linked_arm(7002);
   const auto found = fitted(arm, 1, 2, 5, 0.5);
   EXPECT_TRUE(found.ok()) << found.error().message;
 }
 
-TEST(IdentifyPlaces, AreNotGoneToWhereLinksCannotBeSeen) {
+TEST(IdentifyPlaces, AreSkippedIfLinksCannotBeDetected) {
   const auto said = [](const char* name, int places, bool stretches, bool held) {
     const scene::ArmFile file = scene::load_arm(name).value();
     auto bench = simulated_bench(file, 0);
@@ -156,13 +156,13 @@ TEST(IdentifyPlaces, AreNotGoneToWhereLinksCannotBeSeen) {
     EXPECT_EQ((*bench)->true_force_max(), 0);
     return over->not_done;
   };
-  EXPECT_EQ(said("vintage_phantom", 0, false, false), "not asked for.");
-  EXPECT_NE(said("falcon", 7, false, false).find("links of other builds"), std::string::npos);
+  EXPECT_EQ(said("vintage_phantom", 0, false, false), "not requested.");
+  EXPECT_NE(said("falcon", 7, false, false).find("other geometries"), std::string::npos);
   EXPECT_NE(said("vintage_phantom", 7, true, false).find("cables"), std::string::npos);
   EXPECT_NE(said("vintage_phantom", 7, false, true).find("holds the tip"), std::string::npos);
 }
 
-TEST(IdentifyPlaces, EndWithZeroForceWhenTheyAreStopped) {
+TEST(IdentifyPlaces, StopEndsWithZeroForce) {
   const HiddenArm arm = hidden_arm(3);
   auto bench = simulated_bench(arm.file, 0);
   ASSERT_TRUE(bench.ok());
@@ -172,7 +172,7 @@ TEST(IdentifyPlaces, EndWithZeroForceWhenTheyAreStopped) {
   const auto motions =
       record_places(**bench, arm.file, {.seconds = 2}, places_in(arm.file, 3), stop);
   ASSERT_FALSE(motions.ok());
-  EXPECT_NE(motions.error().message.find("stopped"), std::string::npos);
+  EXPECT_NE(motions.error().message.find("Stopped"), std::string::npos);
   EXPECT_LT(ticks, 3010);
   EXPECT_TRUE((*bench)->device().zero_assured());
 }

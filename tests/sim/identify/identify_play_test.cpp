@@ -1,4 +1,5 @@
-// Play in the cables of hidden arms: found with its interval, and none where there is none.
+// Backlash in the cables of hidden arms is found with its interval, and not reported where there is
+// none.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,8 +23,8 @@ using support::leaves_open;
 using support::long_form;
 using support::Score;
 
-/// A vintage PHANTOM behind cables that stretch, as those of identify_cables_test, with play of 1/3
-/// to 3 times `play` in each joint.
+/// Returns a vintage PHANTOM behind cables that stretch, like those of identify_cables_test, with
+/// backlash of 1/3 to 3 times `play` in each joint.
 HiddenArm arm_with_play(std::uint64_t seed, double play) {
   HiddenArm arm = support::hidden_arm(seed);
   support::Random random(seed + 1000);
@@ -37,8 +38,8 @@ HiddenArm arm_with_play(std::uint64_t seed, double play) {
   return arm;
 }
 
-// Whole width at a joint about which widths are drawn: 3 minutes of arc, what a worn gear of a
-// small drive has, or 0.14 mm at the tip; 5 steps of an encoder [chosen].
+// Central value of the drawn widths, rad at the joint: 3 minutes of arc, as in a worn gear of a
+// small drive. It is 0.14 mm at the tip, or 5 encoder steps [chosen].
 constexpr double kPlay = 1e-3;
 
 TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
@@ -49,7 +50,7 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(6006 + k);
     HiddenArm arm = arm_with_play(seed, kPlay);
-    // Those without play in any joint are looked at in the long form.
+    // Arms without backlash in any joint are tested in the long form.
     if (!long_form()) arm.file.simulated.drive_train.play[0] = 0;
     const bool weighed = long_form() && k % 2 == 0;
     const auto found = identified(arm, {.seconds = long_form() ? 30.0 : 10.0,
@@ -60,12 +61,12 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
       std::printf("arm %d: %s\n", k,
                   !found                    ? found.error().message.c_str()
                   : !found->against.empty() ? found->against.front().c_str()
-                                            : "no play was seen");
+                                            : "no backlash detected");
       continue;
     }
     const auto& train = arm.file.simulated.drive_train;
     const ArmConstants& constants = found->constants;
-    // Motion alone shows no mass: the gains' mean is taken to be one.
+    // Motion without a known mass does not show the scale, so the mean gain is assumed to be 1.
     const double mean = weighed ? 1 : std::cbrt(arm.gain[0] * arm.gain[1] * arm.gain[2]);
     const double moved = arm.file.simulated.plant.mass / mean;
     EXPECT_EQ(constants.absolute, weighed);
@@ -94,7 +95,7 @@ TEST(IdentifyPlay, FindsTheWidthAndTheCableBehindIt) {
   EXPECT_LE(refused, arms / 10);
 }
 
-TEST(IdentifyPlay, SaysDownToWhichWidthThereIsNone) {
+TEST(IdentifyPlay, ReportsItsDetectionLimit) {
   const int arms = long_form() ? 40 : 0;
   int told = 0;
   double most = 0;
@@ -108,7 +109,7 @@ TEST(IdentifyPlay, SaysDownToWhichWidthThereIsNone) {
     EXPECT_FALSE(found->play.seen) << "arm " << k;
     if (!found->play.fits) continue;
     ++told;
-    EXPECT_TRUE(leaves_open(*found, "Play: none seen above")) << "arm " << k;
+    EXPECT_TRUE(leaves_open(*found, "Backlash: none detected above")) << "arm " << k;
     for (const Estimate& width : found->play.width) {
       most = std::max(most, width.value + width.plus_minus);
     }
@@ -118,11 +119,12 @@ TEST(IdentifyPlay, SaysDownToWhichWidthThereIsNone) {
   EXPECT_LT(most, 0.1 * kPlay);
 }
 
-TEST(IdentifyPlay, IsNotBlamedOnLateReportsWhereAMotorOscillates) {
+TEST(IdentifyPlay, OscillatingMotorIsNotTakenForLateReports) {
   // Its motor oscillates at 85 Hz under the force that holds the tip.
   const auto found = identified(arm_with_play(6007, kPlay), {.seconds = 18, .seed = 6007});
   ASSERT_FALSE(found.ok());
-  EXPECT_EQ(found.error().message.find("The joints jumped in"), 0U) << found.error().message;
+  EXPECT_EQ(found.error().message.find("The motion cannot be used: in"), 0U)
+      << found.error().message;
 }
 
 TEST(IdentifyPlay, IsWrittenWithItsInterval) {
@@ -139,7 +141,7 @@ TEST(IdentifyPlay, IsWrittenWithItsInterval) {
       some->find("play: [0, 0.00125, 0]  # rad, whole width at the joints [I 2026-11-26, sim, "
                  "+- 0, 2e-05, 0]"),
       std::string::npos);
-  // Measured again, without play: the old width must not stay.
+  // A second measurement without backlash must remove the old width.
   (*found.cables)[1].play = {};
   const auto again = identified_text(*some, found, mark);
   ASSERT_TRUE(again.ok()) << again.error().message;

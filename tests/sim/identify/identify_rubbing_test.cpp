@@ -1,5 +1,5 @@
-// Friction of the joints of a rigid arm: found joint by joint beside that of the tip, with its
-// intervals, none where there is none, and written so that the twin has it.
+// Friction of the joints of a rigid arm. It is found for each joint in addition to that of the tip,
+// with intervals, not reported where there is none, and written to the file of the twin.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,11 +25,11 @@ using support::long_form;
 using support::rigid_rubbing_arm;
 using support::Score;
 
-TEST(IdentifyRubbing, IsFoundForEachJointBesideThatOfTheTip) {
+TEST(IdentifyRubbing, IsFoundForEachJointInAdditionToTheTip) {
   const int arms = long_form() ? 40 : 2;
   Score dry{"dry", 0.05}, viscous{"viscous", 0.10}, gain{"gains", 0.02}, mass{"mass", 0.03};
   Score delay{"delay", 1e-4};
-  // Beside the tip's friction, which turns its sign at much the same time.
+  // Scores of arms whose tip has friction as well, whose sign reverses at about the same time.
   Score dry_beside{"dry*", 0.25}, viscous_beside{"viscous*", 0.3}, tip{"tip*", 3e-3};
   int refused = 0;
   for (int k = 0; k < arms; ++k) {
@@ -43,7 +43,7 @@ TEST(IdentifyRubbing, IsFoundForEachJointBesideThatOfTheTip) {
       std::printf("arm %d: %s\n", k,
                   !found                    ? found.error().message.c_str()
                   : !found->against.empty() ? found->against.front().c_str()
-                                            : "no friction was seen");
+                                            : "no friction detected");
       continue;
     }
     const auto& train = arm.file.simulated.drive_train;
@@ -65,7 +65,7 @@ TEST(IdentifyRubbing, IsFoundForEachJointBesideThatOfTheTip) {
   EXPECT_LE(refused, arms / 10);
 }
 
-TEST(IdentifyRubbing, IsNotInventedWhereTheTipAloneRubs) {
+TEST(IdentifyRubbing, IsNotReportedIfOnlyTheTipHasFriction) {
   const int arms = long_form() ? 40 : 1;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(8100 + k);
@@ -73,13 +73,13 @@ TEST(IdentifyRubbing, IsNotInventedWhereTheTipAloneRubs) {
     ASSERT_TRUE(found.ok()) << found.error().message;
     EXPECT_TRUE(found->rubbing.searched);
     EXPECT_FALSE(found->rubbing.seen) << "arm " << k;
-    EXPECT_TRUE(
-        leaves_open(*found, "Dry friction of joints beside that of the tip: none seen above"));
+    EXPECT_TRUE(leaves_open(
+        *found, "Dry friction of joints in addition to that of the tip: none detected above"));
     for (const double below : found->rubbing.coulomb_below) EXPECT_LT(below, 2 * kJointDry);
   }
 }
 
-/// An arm whose joints were found to rub.
+/// Returns an identified arm with friction of the joints.
 Identified with_rubbing() {
   Identified found;
   found.constants.mass = {0.08, 0.001};
@@ -109,12 +109,12 @@ TEST(IdentifyRubbing, IsWrittenJointByJointWithItsInterval) {
       << some;
   EXPECT_NE(some.find("    viscous: [0.0002, 0.0004, 0.0006]  # N m s/rad at the joints [I "),
             std::string::npos);
-  // Measured again, without any: the old friction must not stay.
+  // A second measurement without friction must remove the old value.
   found.rubbing = {};
   found.rubbing.searched = true;
   const std::string none = text_with(some, found);
   EXPECT_NE(none.find("    coulomb: [0, 0, 0]  # N m at the joints [I "), std::string::npos);
-  // Cogging beside it stands in the same section.
+  // Cogging is in the same section.
   Identified both = with_rubbing();
   both.waves.searched = true;
   both.waves.periods = 7;
@@ -124,7 +124,7 @@ TEST(IdentifyRubbing, IsWrittenJointByJointWithItsInterval) {
   EXPECT_NE(section.find("periods_per_turn: 7"), std::string::npos);
 }
 
-TEST(IdentifyRubbing, IsToldForBothDirectionsWhereTheyDiffer) {
+TEST(IdentifyRubbing, IsReportedForDirectionsThatDiffer) {
   Identified found = with_rubbing();
   MotionSample sample;
   sample.G = 8 * Eigen::Matrix3d::Identity();  // levers of 0.125 m
@@ -149,9 +149,9 @@ TEST(IdentifyRubbing, NamesTheJointThatSticks) {
   const Eigen::Vector3d levers(0.14, 0.14, 0.14);
   rubbing.coulomb = {Estimate{0.001, 1e-5}, {0.02, 2e-4}, {0.0015, 1e-5}};
   EXPECT_EQ(rubbing.stuck(0.04, levers), 1);
-  EXPECT_EQ(rubbing.stuck(0.2, levers), -1) << "the tip rubs more";
+  EXPECT_EQ(rubbing.stuck(0.2, levers), -1) << "the tip has more friction";
   rubbing.coulomb[2].value = 0.003;
-  EXPECT_EQ(rubbing.stuck(0.04, levers), -1) << "another rubs too";
+  EXPECT_EQ(rubbing.stuck(0.04, levers), -1) << "another joint has high friction too";
 }
 
 }  // namespace

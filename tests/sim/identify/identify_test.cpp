@@ -31,19 +31,19 @@ using support::random_hand;
 using support::Score;
 using support::wide_hidden_arm;
 
-/// Returns what of the torque that it is asked for the weakest motor of an arm gives.
+/// Returns the share of the requested torque that the weakest motor of an arm gives.
 double weakest(const HiddenArm& arm) {
   return *std::min_element(arm.gain.begin(), arm.gain.end());
 }
 
-/// Returns whether an arm's friction is too much for its motors to be told by 0.95 N along all
-/// axes.
+/// Returns whether an arm's friction is too high for its motors to be identified with 0.95 N along
+/// all axes.
 bool is_too_stiff(const HiddenArm& arm) {
   return 6 * arm.file.simulated.plant.coulomb > weakest(arm);
 }
 
-/// Returns whether 0.95 N of an arm's weakest motor carry less than one and a half times the known
-/// mass.
+/// Returns whether 0.95 N from an arm's weakest motor carries less than one and a half times the
+/// known mass.
 bool is_too_weak(const HiddenArm& arm) {
   return 0.95 * weakest(arm) < 1.5 * kKnownMass * scene::kGravity;
 }
@@ -54,8 +54,8 @@ bool is_uneven(const HiddenArm& arm) {
 }
 
 TEST(Identify, FindsConstantsOrReportsTooMuchFriction) {
-  // The method was made with arms 1000 to 1019 in view; these are others. 5012 is a Polhem, whose
-  // strong motors hardly rub beside what it weighs.
+  // The method was developed with arms 1000 to 1019; these are different. 5012 is a Polhem, whose
+  // strong motors have little friction compared with its weight.
   std::vector<std::uint64_t> seeds = {5001, 5002, 5005, 5012};
   for (std::uint64_t k = 0; long_form() && k < 200; ++k) {
     if (k == 0) seeds.clear();
@@ -71,18 +71,18 @@ TEST(Identify, FindsConstantsOrReportsTooMuchFriction) {
         arm, {.seconds = long_form() ? 30.0 : 12.0, .known_mass = kKnownMass, .seed = seed});
     if (!found || !found->against.empty()) {
       const std::string said = found ? found->against.front() : found.error().message;
-      const bool away = said.find("left the space that it may move in") != std::string::npos;
+      const bool away = said.find("left its allowed space") != std::string::npos;
       EXPECT_TRUE(away ? is_too_weak(arm) || is_uneven(arm) : is_too_stiff(arm)) << said;
-      EXPECT_TRUE(away || said.find("The tip stood still") != std::string::npos ||
+      EXPECT_TRUE(away || said.find("The tip was at rest") != std::string::npos ||
                   said.find("moved its joint by") != std::string::npos ||
-                  said.find("its friction is too high for the 1 N") != std::string::npos ||
-                  said.find("beside its dry friction") != std::string::npos)
+                  said.find("its friction is too high for the allowed 1 N") != std::string::npos ||
+                  said.find("compared with its dry friction") != std::string::npos)
           << said;
       ++refused;
       continue;
     }
-    EXPECT_FALSE(found->constants.cables) << "it has none that stretches";
-    EXPECT_FALSE(found->waves.seen()) << "its motors do not cog";
+    EXPECT_FALSE(found->constants.cables) << "it has no cable that stretches";
+    EXPECT_FALSE(found->waves.seen()) << "its motors have no cogging";
     const auto& plant = arm.file.simulated.plant;
     const ArmConstants& constants = found->constants;
     EXPECT_TRUE(constants.absolute);
@@ -95,7 +95,7 @@ TEST(Identify, FindsConstantsOrReportsTooMuchFriction) {
       gain.add(constants.gain[i], arm.gain[i]);
       EXPECT_GT(constants.gain[i].value, 0) << "the sign of motor " << i + 1;
     }
-    // What is too weak to be seen must be said by its interval.
+    // The interval of an effect too weak to be measured must contain it.
     viscous_right += std::abs(constants.viscous.value / plant.viscous - 1) < viscous.most ||
                              constants.viscous.holds(plant.viscous)
                          ? 1
@@ -117,22 +117,22 @@ TEST(Identify, FindsConstantsOrReportsTooMuchFriction) {
   }
   EXPECT_LT(refused, 0.5 * arms);
   EXPECT_GE(viscous_right, 0.95 * (arms - refused));
-  // Of the few intervals in the short form all may hold by chance, or one may not.
+  // In the short form there are few intervals, of which one may miss by chance.
   EXPECT_GT(held, (long_form() ? 0.90 : 0.80) * all);
 }
 
-TEST(Identify, SaysThatAHandHoldsTheTip) {
-  // As soft as two fingers that barely touch it, or a firm grip.
+TEST(Identify, ReportsAHandOnTheTip) {
+  // From two fingers that barely touch it to a firm grip.
   for (std::uint64_t seed = 1; seed <= (long_form() ? 60 : 2); ++seed) {
     SCOPED_TRACE(seed);
     HiddenArm arm = long_form() && seed % 3 != 2 ? wide_hidden_arm(seed) : hidden_arm(seed);
     arm.file.simulated.hand = random_hand(seed);
     const auto found = identified(arm, {.seconds = 12, .seed = seed}, true);
-    ASSERT_FALSE(found.ok() && found->against.empty()) << "a hand was taken for the arm";
+    ASSERT_FALSE(found.ok() && found->against.empty()) << "a hand was mistaken for the arm";
     const std::string said = found ? found->against.front() : found.error().message;
     EXPECT_EQ(said.find("pulls against its encoder"), std::string::npos) << "no sign is wrong";
     EXPECT_TRUE(said.find("grip") != std::string::npos ||
-                said.find("The tip stood still") != std::string::npos)
+                said.find("The tip was at rest") != std::string::npos)
         << said;
   }
 }
@@ -156,13 +156,13 @@ TEST(Identify, SeesOnlyRatiosWithoutAKnownMass) {
   EXPECT_NE(constants_table(*found, arm.file).find("--known-mass"), std::string::npos);
 }
 
-/// What is said of a fit: an error, or what speaks against it; empty if nothing is.
+/// Returns the error of a fit or the first reason to distrust it; empty if there is neither.
 std::string said_of(const driver::Result<Identified>& found) {
   if (!found) return found.error().message;
   return found->against.empty() ? "" : found->against.front();
 }
 
-/// What is said of an arm that is another than the model's.
+/// Returns the same for an arm that differs from the model.
 std::string said_of(std::uint64_t seed, const std::function<void(scene::ArmFile&)>& change,
                     bool hold_it = false, bool cables = true, bool play = long_form()) {
   HiddenArm arm = hidden_arm(seed);
@@ -180,19 +180,19 @@ void soften_cables(scene::ArmFile& file) {
   train.damping.setConstant(0.01);
 }
 
-/// Returns whether such an arm is so heavy that its links oscillate below 15 Hz on cables of
-/// 20 N m/rad.
+/// Returns whether the arm is so heavy that its links oscillate below 15 Hz on cables of 20 N
+/// m/rad.
 bool oscillates_below_lines(std::uint64_t seed) {
   return hidden_arm(seed).file.simulated.plant.mass > 0.12;
 }
 
-TEST(Identify, TellsAWrongModelApart) {
+TEST(Identify, DetectsAWrongModel) {
   for (std::uint64_t seed = 1; seed <= (long_form() ? 10 : 1); ++seed) {
     SCOPED_TRACE(seed);
     EXPECT_EQ(said_of(seed, [](auto&) {}), "");
     if (!oscillates_below_lines(seed)) {
       EXPECT_EQ(said_of(seed, soften_cables), "");
-      EXPECT_NE(said_of(seed, soften_cables, false, false).find("not that of a rigid arm"),
+      EXPECT_NE(said_of(seed, soften_cables, false, false).find("does not fit a rigid arm"),
                 std::string::npos);
     }
     EXPECT_EQ(said_of(seed,
@@ -201,7 +201,7 @@ TEST(Identify, TellsAWrongModelApart) {
                         file.simulated.drive_train.periods_per_turn = 7;
                       }),
               "");
-    // Beside play the friction of a joint is measured where its cable is seen to stretch.
+    // Friction of a joint is measured like backlash if its cable stretches.
     const auto rub = [&](scene::ArmFile& file) {
       soften_cables(file);
       file.simulated.drive_train.stiffness.setConstant(2000);
@@ -226,21 +226,21 @@ TEST(Identify, TellsAWrongModelApart) {
         true);
     EXPECT_NE(held, "") << "a hand that holds";
     EXPECT_EQ(held.find("pulls against its encoder"), std::string::npos) << "no sign is wrong";
-    // Some jitter is no wrong model: ticks come behind the latest reports.
+    // A little jitter does not make the model wrong: ticks follow the latest reports.
     EXPECT_EQ(said_of(seed, [](scene::ArmFile& file) { file.simulated.wire.jitter_ns = 200'000; }),
               "");
   }
 }
 
-TEST(Identify, SaysThatCablesAreSofterThanItLooksFor) {
+TEST(Identify, ReportsCablesSofterThanTheSearchRange) {
   constexpr std::uint64_t kSeed = 2;
   ASSERT_TRUE(oscillates_below_lines(kSeed));
   const std::string said = said_of(kSeed, soften_cables, false, true, false);
   EXPECT_NE(said.find("oscillates on its cable at "), std::string::npos) << said;
-  EXPECT_NE(said.find("looked for from 15 Hz on"), std::string::npos) << said;
+  EXPECT_NE(said.find("cables are identified from 15 Hz on"), std::string::npos) << said;
 }
 
-TEST(Identify, BlamesCablesThatWereNotLookedFor) {
+TEST(Identify, NamesCablesThatWereNotSearchedFor) {
   for (std::uint64_t seed = 1; seed <= (long_form() ? 10 : 1); ++seed) {
     for (const double stiffness : {200.0, 2000.0}) {
       HiddenArm arm = hidden_arm(seed);
@@ -258,7 +258,7 @@ TEST(Identify, BlamesCablesThatWereNotLookedFor) {
   }
 }
 
-TEST(Identify, SaysThatAHandPullsTheTipToAndFro) {
+TEST(Identify, ReportsAHandThatMovesTheTip) {
   for (std::uint64_t seed = 1; seed <= (long_form() ? 10 : 1); ++seed) {
     HiddenArm arm = hidden_arm(seed);
     arm.file.simulated.hand = {.mass = 0.02, .stiffness = 60, .damping = 1};
@@ -277,7 +277,7 @@ TEST(Identify, SaysThatAHandPullsTheTipToAndFro) {
   }
 }
 
-TEST(Identify, NamesAMotorThatIsTurnedRoundOrDead) {
+TEST(Identify, NamesAReversedOrDeadMotor) {
   for (std::uint64_t seed = 1; seed <= (long_form() ? 10 : 3); ++seed) {
     for (int motor = 0; motor < 3; ++motor) {
       const std::string name = "Motor " + std::to_string(motor + 1);
@@ -292,11 +292,11 @@ TEST(Identify, NamesAMotorThatIsTurnedRoundOrDead) {
   }
 }
 
-TEST(Identify, NeverAsksForMoreThanItSaysNorGoesFar) {
+TEST(Identify, StaysWithinForceAndDistanceLimits) {
   for (std::uint64_t seed = 1; seed <= (long_form() ? 200 : 2); ++seed) {
     HiddenArm arm = hidden_arm(seed);
     for (const double pull : {0.0, arm.file.simulated.plant.coulomb + 0.03, 5.0}) {
-      // Something pulls the tip away, as hard as it may.
+      // Something pulls the tip away with the maximum force.
       scene::ArmFile file = arm.file;
       file.simulated.firmware.wiring.motor_gain.setOnes();
       file.simulated.weight_B = {pull, 0, 0};
@@ -305,7 +305,7 @@ TEST(Identify, NeverAsksForMoreThanItSaysNorGoesFar) {
       const std::atomic<bool> never{false};
       Eigen::Vector3d begin(0, 0, 0);
       int pushed = 0;
-      // Every command, asked for and sent, from the first push of a motor on.
+      // Every force, requested and sent, from the first push of a motor on.
       (*bench)->watch([&](const driver::TickRecord& tick) {
         const Eigen::Vector3d wanted(tick.f_wanted_W.data()), sent(tick.f_sent_W.data());
         const Eigen::Vector3d p_WT(tick.p_WT.data());
@@ -314,12 +314,12 @@ TEST(Identify, NeverAsksForMoreThanItSaysNorGoesFar) {
         if (pushed == 0) begin = p_WT;
         pushed += wanted.isZero(0) ? 0 : 1;
         const bool far = (p_WT - begin).norm() >= Excitation::kFar;
-        ASSERT_TRUE(!far || wanted.isZero(0)) << "asked to move on beyond its space";
+        ASSERT_TRUE(!far || wanted.isZero(0)) << "force requested outside of its space";
       });
       const auto motion = record_motion(**bench, file, {.seconds = 10, .seed = seed}, never);
       EXPECT_EQ(motion.ok(), pull == 0) << pull;
       EXPECT_EQ(pushed > 9000, pull == 0) << pushed;
-      // Rounded currents may make a force some mN longer.
+      // Rounded currents may increase a force by a few mN.
       EXPECT_LT((*bench)->true_force_max(), kIdentifyForceMax + 0.01);
       EXPECT_TRUE((*bench)->device().zero_assured());
       if (!motion) continue;

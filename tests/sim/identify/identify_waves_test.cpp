@@ -1,5 +1,5 @@
-// Cogging and ripple of the motors: what is found of them, what they do to the other constants, and
-// what an arm without them is told to have.
+// Cogging and ripple of the motors: their detection, their effect on the other constants, and no
+// detection for an arm without them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,15 +32,17 @@ using support::Random;
 using support::Score;
 using support::wide_hidden_arm;
 
-/// Numbers of periods of motors: least common multiples of slots and poles, and twice the segments
-/// of commutators.
+/// Periods per turn of motors: least common multiples of slots and poles, and twice the segments of
+/// commutators.
 constexpr std::array kPeriods = {7, 10, 12, 14, 18, 22, 24, 26, 36, 48, 72, 84};
-// N m, a hundredth of what a motor of the vintage arm gives for long (0.91 A, 0.0234 N m/A)
-// [chosen: few per cent are usual, M Hanselman 2006]; and between half of 1 - cos(90 degrees / N)
-// of a commutator with N segments (0.8 % for 9) and half of 1 - cos(30 degrees) of blocks (7 %).
+// Cogging, N m: a hundredth of the continuous torque of a motor of the vintage arm (0.91 A, 0.0234
+// N m/A) [chosen: a few per cent are usual, M Hanselman 2006]. Ripple, relative: between half of 1
+// - cos(90 degrees / N) of a commutator with N segments (0.8 % for 9) and half of 1 - cos(30
+// degrees) of block commutation (7 %).
 constexpr double kCogging = 2e-4, kRipple = 0.02;
 
-/// Gives an arm cogging or ripple, or both, 1/3 to 3 times the usual, with any phases.
+/// Gives an arm cogging or ripple, or both, with 1/3 to 3 times the usual amplitude and random
+/// phases.
 void give_waves(HiddenArm& arm, Random& random) {
   auto& train = arm.file.simulated.drive_train;
   const auto third_to_three = [&](double value) {
@@ -56,7 +58,7 @@ void give_waves(HiddenArm& arm, Random& random) {
   }
 }
 
-/// How waves of one kind were found.
+/// Statistics of the waves of one kind that were found.
 struct Found {
   const char* name;
   int there = 0, seen = 0, invented = 0, held = 0, off = 0, phases_held = 0;
@@ -81,7 +83,7 @@ struct Found {
 };
 
 TEST(IdentifyWaves, FindsCoggingAndRippleOfHiddenArms) {
-  // Polhems, whose linkage takes ten times as long to simulate, are left to the long form.
+  // Polhems are only in the long form, because their linkage takes ten times as long to simulate.
   std::vector<std::uint64_t> seeds = {9000, 9001};
   for (std::uint64_t k = 0; long_form() && k < 60; ++k) {
     if (k == 0) seeds.clear();
@@ -143,16 +145,17 @@ TEST(IdentifyWaves, FindsCoggingAndRippleOfHiddenArms) {
   for (const Found* one : {&cogging, &ripple}) {
     EXPECT_EQ(one->invented, 0) << one->name;
     EXPECT_GE(one->seen, 0.8 * one->there) << one->name;
-    // More than a tenth off and outside of the interval, of which 5 % miss.
+    // Wrong by more than a tenth and outside of the interval; 5 % of the intervals may miss.
     EXPECT_LE(one->off, 0.05 * one->seen) << one->name;
-    // Of the few in the short form one may miss by chance.
+    // In the short form there are few intervals, of which one may miss by chance.
     EXPECT_GE(one->held, std::min(0.9 * one->seen, one->seen - 1.0)) << one->name;
     EXPECT_GE(one->phases_held, std::min(0.9 * one->seen, one->seen - 1.0)) << one->name;
   }
 }
 
 TEST(IdentifyWaves, ComparesOnlyMotorsThatTurnedFarEnough) {
-  // The second motor turns through 0.93 periods of 7, the right number, and through 1.06 of 8.
+  // The second motor turns through 0.93 periods with 7 per turn, the correct number, and 1.06 with
+  // 8.
   constexpr std::uint64_t kSeed = 9;
   HiddenArm arm = hidden_arm(kSeed);
   auto& train = arm.file.simulated.drive_train;
@@ -171,9 +174,9 @@ TEST(IdentifyWaves, ComparesOnlyMotorsThatTurnedFarEnough) {
   }
 }
 
-TEST(IdentifyWaves, SaysDownToWhichAmplitudeNoneWereSeen) {
-  // Arms without any are told so, and those with a little more than what is said to be seen are
-  // found: of one motor alone, in turn.
+TEST(IdentifyWaves, ReportsItsDetectionLimit) {
+  // No waves are reported for arms without any; amplitudes slightly above the reported detection
+  // limit are found, for one motor at a time.
   int invented = 0, missed = 0;
   const int arms = long_form() ? 40 : 1;
   for (int k = 0; k < arms; ++k) {
@@ -187,9 +190,9 @@ TEST(IdentifyWaves, SaysDownToWhichAmplitudeNoneWereSeen) {
     ASSERT_TRUE(none->waves.searched);
     std::string said;
     for (const std::string& sentence : not_identified(*none)) said += sentence + "\n";
-    EXPECT_NE(said.find("Cogging of the motors: none seen; "), std::string::npos) << said;
-    EXPECT_NE(said.find("Ripple of the motors: none seen; "), std::string::npos) << said;
-    EXPECT_NE(said.find("with any of "), std::string::npos) << said;
+    EXPECT_NE(said.find("Cogging of the motors: none detected; "), std::string::npos) << said;
+    EXPECT_NE(said.find("Ripple of the motors: none detected; "), std::string::npos) << said;
+    EXPECT_NE(said.find(" periods per turn would have been detected."), std::string::npos) << said;
     const auto motor = static_cast<std::size_t>(k % 3);
     auto& train = arm.file.simulated.drive_train;
     train.periods_per_turn = 14;
@@ -200,20 +203,20 @@ TEST(IdentifyWaves, SaysDownToWhichAmplitudeNoneWereSeen) {
     train.cogging[i] = 1.2 * wave.below * arm.gain[motor] / none->waves.ratio[i];
     const auto some = identified(arm, options);
     ASSERT_TRUE(some.ok()) << some.error().message;
-    // How many periods it has in a turn takes more of it.
+    // Identifying the number of periods per turn needs a larger amplitude.
     missed += some->waves.cogging[motor].seen ? 0 : 1;
   }
-  std::printf("%d of %d arms without waves told to have some, %d above the limit missed\n",
-              invented, arms, missed);
+  std::printf("waves reported for %d of %d arms without any, %d above the limit missed\n", invented,
+              arms, missed);
   EXPECT_EQ(invented, 0);
   EXPECT_LE(missed, 0.05 * arms);
 }
 
-TEST(IdentifyWaves, TakesTheNumberOfPeriodsThatTheFileNames) {
+TEST(IdentifyWaves, UsesThePeriodsOfTheFile) {
   HiddenArm arm = hidden_arm(9101);
   auto& train = arm.file.simulated.drive_train;
   train.cogging.setConstant(kCogging);
-  // No whole number, which no search would try.
+  // Not an integer, so no search would try it.
   train.periods_per_turn = 15.5;
   const OpenBench open = [&](bool) { return simulated_bench(arm.file, 0); };
   const std::atomic<bool> never{false};
@@ -224,7 +227,7 @@ TEST(IdentifyWaves, TakesTheNumberOfPeriodsThatTheFileNames) {
   EXPECT_EQ(found->waves.least, found->waves.most);
 }
 
-/// An identified arm with waves of some motors, as if it had been measured.
+/// Returns an identified arm with waves of some motors, as after a measurement.
 Identified with_waves() {
   Identified found;
   found.constants.mass = {0.08, 0.001};
@@ -240,7 +243,8 @@ Identified with_waves() {
   return found;
 }
 
-/// The drive train of a file that is written for it, out of the vintage arm's with `train` in it.
+/// Returns the drive train of the file written for it, from the vintage arm's file with `train`
+/// added.
 device_sim::DriveTrainSettings written(const Identified& found, const std::string& train,
                                        std::string* text = nullptr) {
   const auto own = support::scratch_folder() / "thimble_waves_own.yaml";
@@ -261,7 +265,7 @@ device_sim::DriveTrainSettings written(const Identified& found, const std::strin
   return read.ok() ? read->simulated.drive_train : device_sim::DriveTrainSettings{};
 }
 
-TEST(IdentifyWaves, GoIntoTheNewFileWhateverItNamedBefore) {
+TEST(IdentifyWaves, ReplaceAnyEarlierValues) {
   const Identified found = with_waves();
   for (const std::string own :
        {"", "  drive_train: {current_lag: 0.0003}\n",
@@ -271,7 +275,7 @@ TEST(IdentifyWaves, GoIntoTheNewFileWhateverItNamedBefore) {
     std::string text;
     const device_sim::DriveTrainSettings train = written(found, own, &text);
     EXPECT_EQ(train.periods_per_turn, 14);
-    // 1.8 mN m at the joint by the file's constants, of which the motor gives twice as much.
+    // 1.8 mN m at the joint with the file's constants; the motor gives twice as much.
     EXPECT_NEAR(train.cogging[0], 4e-4, 1e-8);
     EXPECT_EQ(train.cogging.tail<2>(), Eigen::Vector2d(0, 0));
     EXPECT_EQ(train.cogging_phase, Eigen::Vector3d(-1.5, 0, 0));
@@ -284,13 +288,14 @@ TEST(IdentifyWaves, GoIntoTheNewFileWhateverItNamedBefore) {
   }
 }
 
-TEST(IdentifyWaves, ThatWereNotSeenAreNoneInTheNewFile) {
+TEST(IdentifyWaves, UndetectedWavesAreZeroInTheNewFile) {
   Identified found = with_waves();
   found.waves.cogging[0].seen = found.waves.ripple[2].seen = false;
   const std::string named = "  drive_train: {cogging: [0.1, 0.1, 0.1], periods_per_turn: 7}\n";
   EXPECT_TRUE(written(found, named).cogging.isZero(0));
   EXPECT_FALSE(written(found, "").named());
-  // Those that were not looked for stay as they were, and so do those of an unknown number.
+  // Waves that were not searched for are unchanged, and so are those with an unknown number of
+  // periods.
   found.waves.searched = false;
   EXPECT_EQ(written(found, named).cogging, Eigen::Vector3d::Constant(0.1));
   found = with_waves();
@@ -299,17 +304,17 @@ TEST(IdentifyWaves, ThatWereNotSeenAreNoneInTheNewFile) {
   EXPECT_FALSE(written(found, "").named());
   std::string said;
   for (const std::string& sentence : not_identified(found)) said += sentence;
-  EXPECT_NE(said.find("14, 13, 15 explain it about as well"), std::string::npos) << said;
+  EXPECT_NE(said.find("14, 13, 15 fit about equally well"), std::string::npos) << said;
 }
 
-TEST(IdentifyWaves, StandInTheTableMotorByMotor) {
+TEST(IdentifyWaves, TableListsEachMotor) {
   const auto file = scene::load_arm("vintage_phantom").value();
   const std::string table = constants_table(with_waves(), file);
   EXPECT_NE(table.find("periods of cogging, ripple         14 "), std::string::npos) << table;
   EXPECT_NE(table.find("cogging of motor 1              0.4 +- 0.02 "), std::string::npos) << table;
   EXPECT_NE(table.find("ripple of motor 3                 3 +- 0.1 "), std::string::npos) << table;
-  EXPECT_NE(table.find("Cogging of the motors: none seen; 0.01 mN m (motor 2), 0.01 mN m (motor 3) "
-                       "with any of 6 to 264 periods in a turn would have been."),
+  EXPECT_NE(table.find("Cogging of the motors: none detected; 0.01 mN m (motor 2), 0.01 mN m "
+                       "(motor 3) with 6 to 264 periods per turn would have been detected."),
             std::string::npos)
       << table;
 }

@@ -1,4 +1,5 @@
-// The exact law of a wall against the simulator, where loop, reports and wire have different paces.
+// The exact law of a wall compared with the simulator, with different periods of loop, reports and
+// wire.
 
 #include <gtest/gtest.h>
 
@@ -16,14 +17,14 @@ namespace thimble {
 namespace {
 
 struct Pace {
-  double rate = 1000;            // of the loop, Hz
-  std::int64_t report_ns = 0;    // between the arm's reports
-  std::int64_t delay_in_ns = 0;  // of a report
+  double rate = 1000;            // rate of the loop, Hz
+  std::int64_t report_ns = 0;    // period of the arm's reports
+  std::int64_t delay_in_ns = 0;  // delay of a report
   std::int64_t delay_out_ns = 0;
-  double damping = 0;  // of the wall, N s/m
+  double damping = 0;  // damping of the wall, N s/m
 };
 
-/// A PHANTOM without dry friction, encoder steps and tremor, at a pace.
+/// Returns a PHANTOM without dry friction, encoder steps and tremor, with these periods.
 scene::ArmFile arm_at(const Pace& pace) {
   scene::ArmFile arm =
       scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml").value();
@@ -63,7 +64,7 @@ bool grows(const scene::ArmFile& arm, const Pace& pace, double stiffness) {
     }
     return high - low;
   };
-  // What has died out shows the digits of the encoders only.
+  // An oscillation that has died out shows only the resolution of the encoders.
   const double late = swing(kDuration - kWindow);
   return late > 1e-8 && late > swing(kEarly);
 }

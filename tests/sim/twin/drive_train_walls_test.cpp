@@ -1,5 +1,5 @@
-// Amplifiers that lag and cables that stretch: the simulated arm beside the linear loop of both
-// masses and beside the law [PHYSICS 1.1].
+// Amplifiers that lag and cables that stretch: the simulated arm compared with the linear loop of
+// both masses and with the law [PHYSICS 1.1].
 #include "studies/stability/drive_train_walls.h"
 
 #include <gtest/gtest.h>
@@ -9,12 +9,12 @@
 namespace thimble::twin {
 namespace {
 
-TEST(DriveTrainWalls, AreThoseOfTheLinearLoopAndOfTheLaw) {
+TEST(DriveTrainWalls, MatchTheLinearLoopAndTheLaw) {
   const auto setup = studies::stability_setup({.arm_file = "vintage_phantom", .direction = {}});
   ASSERT_TRUE(setup.ok()) << setup.error().message;
   using enum studies::StabilityPart;
-  // A lag; a cable whose tip rubs the more; one with a motor that only its damping holds; one that
-  // is all but stiff.
+  // A lag; a cable with high friction of the tip; a cable with a motor that only its damping holds;
+  // a nearly stiff cable.
   for (const studies::StabilityCell& cell : {studies::StabilityCell{.part = kLagEdge, .a = 0.001},
                                              {.part = kCableEdge, .a = 6.8e3, .b = 3},
                                              {.part = kCableEdge, .a = 3.2e4, .b = 0.3},
@@ -23,7 +23,7 @@ TEST(DriveTrainWalls, AreThoseOfTheLinearLoopAndOfTheLaw) {
     const double exact = stability::stiffness_edge(linear);
     const auto found = studies::drive_train_edge(*setup, cell);
     ASSERT_TRUE(found.ok()) << found.error().message;
-    // Near its edge the motor grows slowly beside a tip that dies slowly.
+    // Near the edge the motor's oscillation grows slowly while the tip's decays slowly.
     EXPECT_NEAR(*found / exact, 1, 0.04) << cell.a << " " << cell.b;
     EXPECT_NEAR(stability::limit_by_phase(linear) / exact, 1, 0.03) << cell.a << " " << cell.b;
   }

@@ -34,7 +34,8 @@ TwinResult both_ways(const session::Recording& recording, const scene::ArmFile& 
   return std::move(result).value();
 }
 
-/// What reliving a recording by the arm of a file leaves, over what the encoders' steps do.
+/// Returns the error of a recording replayed on the arm of a file, relative to the error from
+/// encoder steps.
 double left_by(const TwinMotion& motion, const scene::ArmFile& file) {
   auto relive = Relive::make(motion, 0.2);
   if (!relive) {
@@ -51,7 +52,7 @@ TEST(TwinCables, SameConstantsReproduceTheMotion) {
   double worst = 0, apart = 0;
   for (std::uint64_t seed = 1; seed <= arms; ++seed) {
     HiddenArm arm = cabled_arm(seed);
-    // Of every third one the currents lag as well.
+    // In every third arm the currents lag as well.
     if (seed % 3 == 0) arm.file.simulated.drive_train.current_lag = 5e-4;
     const auto motion =
         twin_motion(recorded_motion(arm.file, "vintage_phantom", seed, 2.5), arm.file);
@@ -77,7 +78,7 @@ TEST(TwinCables, SameConstantsReproduceTheMotion) {
 }
 
 TEST(TwinCables, NameTheConstantThatIsWrong) {
-  if (!long_form()) GTEST_SKIP() << "18 constants, each tried: in the long form alone";
+  if (!long_form()) GTEST_SKIP() << "18 constants, each tested: only in the long form";
   using Train = device_sim::DriveTrainSettings;
   struct Mistake {
     const char* key;

@@ -17,7 +17,8 @@ namespace {
 using support::hidden_arm;
 using support::HiddenArm;
 
-/// The recorded motion of a hidden arm, with its hand if it is held, as `file` understands it.
+/// Returns the recorded motion of a hidden arm, interpreted with `file`; a hand holds the arm if
+/// `hold_it`.
 TwinMotion motion_of(const HiddenArm& arm, bool hold_it) {
   session::Recording recording;
   std::ostringstream text;
@@ -36,7 +37,7 @@ TwinMotion motion_of(const HiddenArm& arm, bool hold_it) {
   return twin_motion(recording, arm.file).value();
 }
 
-TEST(TwinForces, AreThoseOfTheMotorsWhereNobodyHoldsTheTip) {
+TEST(TwinForces, EqualMotorForcesOnAFreeTip) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const HiddenArm arm = hidden_arm(seed);
     const TwinForces found = twin_forces(motion_of(arm, false), arm.file);
@@ -48,7 +49,7 @@ TEST(TwinForces, AreThoseOfTheMotorsWhereNobodyHoldsTheTip) {
   }
 }
 
-TEST(TwinForces, TellTheHandThatHeldTheTip) {
+TEST(TwinForces, DetectAHandOnTheTip) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     HiddenArm arm = hidden_arm(seed);
     arm.file.simulated.hand = {.mass = 0.02, .stiffness = 60, .damping = 1};
@@ -61,7 +62,7 @@ TEST(TwinForces, TellTheHandThatHeldTheTip) {
   }
 }
 
-TEST(TwinForces, KnowTheFrictionOfJoints) {
+TEST(TwinForces, IncludeTheFrictionOfJoints) {
   for (std::uint64_t seed = 8000; seed <= 8001; ++seed) {
     const HiddenArm arm = support::rigid_rubbing_arm(seed);
     const TwinMotion motion = motion_of(arm, false);
@@ -75,7 +76,7 @@ TEST(TwinForces, KnowTheFrictionOfJoints) {
   }
 }
 
-TEST(TwinForces, SayThatAConstantIsWrongWhereItIsNoHand) {
+TEST(TwinForces, ReportAWrongConstantInsteadOfAHand) {
   const HiddenArm arm = hidden_arm(2);
   const TwinMotion motion = motion_of(arm, false);
   scene::ArmFile wrong = arm.file;

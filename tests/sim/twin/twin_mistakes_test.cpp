@@ -1,5 +1,4 @@
-// What a comparison says of arm files that are wrong in ways that motion shows together, or not at
-// all.
+// Comparisons with wrong arm files: errors that motion shows only together, or not at all.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +16,7 @@
 namespace thimble::twin {
 namespace {
 
-/// What `thimble identify --record` writes of the shipped PHANTOM.
+/// Returns the recording that `thimble identify --record` writes for the shipped PHANTOM.
 const session::Recording& recorded_phantom() {
   static const session::Recording recording = [] {
     session::Recording made;
@@ -46,7 +45,7 @@ TwinResult compared(const scene::ArmFile& file) {
   return std::move(result).value();
 }
 
-/// Returns all that the command says of a comparison.
+/// Returns the complete text of the command about a comparison.
 std::string said_of(const TwinResult& result) {
   std::string all;
   for (const std::string& sentence : result.comparison.told) all += sentence + "\n";
@@ -79,7 +78,7 @@ TEST(TwinMistakes, TwoWrongConstantsAreBothNamed) {
   EXPECT_TRUE(named("simulation.tip.coulomb")) << said_of(result);
 }
 
-/// What motion cannot show, and the word that names it.
+/// A property that motion cannot show, and the word that names it.
 struct Unseen {
   const char* word;
   void (*make)(scene::ArmFile&);
@@ -104,7 +103,8 @@ TEST(TwinMistakes, WhatMotionCannotShowIsNamed) {
     const auto sentences = unseen_differences(right, wrong);
     ASSERT_EQ(sentences.size(), 1u) << one.word;
     EXPECT_NE(sentences.front().find(one.word), std::string::npos) << sentences.front();
-    EXPECT_NE(sentences.front().find("thimble "), std::string::npos) << "what can tell";
+    EXPECT_NE(sentences.front().find("thimble "), std::string::npos)
+        << "the sentence must name a test";
   }
 }
 

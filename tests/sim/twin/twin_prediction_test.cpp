@@ -36,8 +36,8 @@ using support::HiddenArm;
 
 constexpr double kKnownMass = 0.025;  // kg
 
-/// A hidden arm whose driver was given what identifying it found, and its twin: the simulated arm
-/// of the file that `thimble identify` writes.
+/// A hidden arm whose driver uses the identified constants, and its twin: the simulated arm of the
+/// file that `thimble identify` writes.
 struct HiddenAndTwin {
   scene::ArmFile arm, twin;
 };
@@ -47,7 +47,7 @@ driver::Result<HiddenAndTwin> identified(const HiddenArm& hidden, std::uint64_t 
   const bringup::OpenBench open = [&](bool loaded) {
     return bringup::simulated_bench(hidden.file, loaded ? kKnownMass : 0);
   };
-  // What cogs is not known.
+  // The cogging is not known to the driver.
   scene::ArmFile named = hidden.file;
   named.simulated.drive_train.periods_per_turn = 0;
   const std::atomic<bool> never{false};
@@ -76,7 +76,7 @@ driver::Result<HiddenAndTwin> identified(const HiddenArm& hidden, std::uint64_t 
   return both;
 }
 
-/// Of the torque that is asked for, what each motor of an arm gets: strong ones get less.
+/// Returns the share of the requested torque that each motor of an arm gets; strong ones get less.
 Eigen::Vector3d probed_share(const scene::ArmFile& file) {
   auto bench = bringup::simulated_bench(file, 0);
   const std::atomic<bool> never{false};
@@ -86,8 +86,8 @@ Eigen::Vector3d probed_share(const scene::ArmFile& file) {
   return motion ? motion->share : Eigen::Vector3d::Zero();
 }
 
-/// Where a free tip was seen (B, m), tick by tick over 10 s, under an excitation that it was not
-/// identified with; motors get these shares of it.
+/// Returns the measured position of a free tip (B, m), tick by tick over 10 s, under an excitation
+/// other than that of the identification. Motors get these shares of it.
 std::vector<Eigen::Vector3d> free_motion(const scene::ArmFile& file, const Eigen::Vector3d& share,
                                          std::uint64_t seed) {
   std::vector<Eigen::Vector3d> p_BT;
@@ -106,7 +106,7 @@ std::vector<Eigen::Vector3d> free_motion(const scene::ArmFile& file, const Eigen
   return p_BT;
 }
 
-/// How far two motions come apart, over the range of the first.
+/// Returns the largest distance of two motions relative to the range of the first.
 double apart(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b) {
   if (a.empty() || a.size() != b.size()) return HUGE_VAL;
   Eigen::Vector3d least = a.front(), most = a.front();
@@ -119,10 +119,10 @@ double apart(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vec
   return farthest / (most - least).maxCoeff();
 }
 
-/// The farthest that predictions were off, as shares.
+/// Max. relative errors of the predictions.
 struct Worst {
   double wall = 0, restitution = 0, flight = 0, motion = 0;
-  int walls_off = 0;  // by more than a twentieth
+  int walls_off = 0;  // number of walls with an error above a twentieth
 };
 
 void try_twin(const HiddenAndTwin& both, std::uint64_t seed, Worst& worst) {
@@ -138,7 +138,7 @@ void try_twin(const HiddenAndTwin& both, std::uint64_t seed, Worst& worst) {
       apart(free_motion(both.arm, share, ~seed), free_motion(both.twin, share, ~seed));
   if (!(wall < 0.05)) {
     ++worst.walls_off;
-    std::printf("arm %d: wall of %.0f N/m, in truth %.0f\n", static_cast<int>(seed),
+    std::printf("arm %d: predicted wall of %.0f N/m, true %.0f\n", static_cast<int>(seed),
                 told->stiffest_wall, true_of->stiffest_wall);
   }
   EXPECT_LT(wall, 0.1) << "arm " << seed;
@@ -151,8 +151,8 @@ void try_twin(const HiddenAndTwin& both, std::uint64_t seed, Worst& worst) {
   worst.motion = std::max(worst.motion, motion);
 }
 
-/// Tells how far they were off, and expects of 19 in 20 walls that they were right to a twentieth:
-/// whether a stiff one rests hangs on where it stands between two steps of the encoders.
+/// Prints the errors, and expects that 19 in 20 walls are correct to a twentieth. Whether a stiff
+/// wall comes to rest depends on its position between two encoder steps.
 void tell(const char* what, int arms, const Worst& worst) {
   EXPECT_LE(20 * worst.walls_off, arms) << what;
   std::printf(
@@ -165,7 +165,7 @@ void tell(const char* what, int arms, const Worst& worst) {
 
 TEST(TwinPrediction, MatchesTheIdentifiedArm) {
   const bool all = support::long_form();
-  // Amplifiers that lag are nothing that the twin knows of: it takes them for delay.
+  // The twin has no amplifier lag; it treats the lag as delay.
   for (const double lag : {0.0, 5e-4}) {
     const int arms = !all ? (lag > 0 ? 0 : 1) : (lag > 0 ? 20 : 60);
     Worst worst;
@@ -176,7 +176,7 @@ TEST(TwinPrediction, MatchesTheIdentifiedArm) {
       hidden.file.simulated.drive_train.current_lag = lag;
       const auto both = identified(hidden, seed);
       if (!both) {
-        // A lag looks a little like the motor of a stiff cable.
+        // A lag looks similar to the motor of a stiff cable.
         EXPECT_GT(lag, 0) << "arm " << seed << ": " << both.error().message;
         std::printf("arm %d: %s\n", static_cast<int>(seed), both.error().message.c_str());
         continue;
@@ -189,13 +189,13 @@ TEST(TwinPrediction, MatchesTheIdentifiedArm) {
   }
 }
 
-TEST(TwinPrediction, OfAnIdentifiedArmBehindCablesHoldsAsWell) {
-  if (!support::long_form()) GTEST_SKIP() << "20 arms: in the long form alone";
+TEST(TwinPrediction, HoldsForArmsBehindCables) {
+  if (!support::long_form()) GTEST_SKIP() << "20 arms: only in the long form";
   constexpr int kArms = 20;
   int written = 0;
   Worst worst;
   for (int k = 0; k < kArms; ++k) {
-    // Those of IdentifyCables: some are told to be a bad fit, and nothing is written of them.
+    // The arms of IdentifyCables: some are reported as a bad fit, without a file.
     const auto seed = static_cast<std::uint64_t>(6000 + k);
     const auto both = identified(support::cabled_arm(seed), seed, 30);
     if (!both) continue;
@@ -207,8 +207,8 @@ TEST(TwinPrediction, OfAnIdentifiedArmBehindCablesHoldsAsWell) {
   EXPECT_GE(2 * written, kArms);
 }
 
-TEST(TwinPrediction, OfAnArmThatCogsHoldsAsWell) {
-  if (!support::long_form()) GTEST_SKIP() << "12 arms: in the long form alone";
+TEST(TwinPrediction, HoldsForArmsWithCogging) {
+  if (!support::long_form()) GTEST_SKIP() << "12 arms: only in the long form";
   constexpr int kArms = 12;
   Worst worst;
   for (std::uint64_t seed = 1; seed <= kArms; ++seed) {
@@ -216,7 +216,7 @@ TEST(TwinPrediction, OfAnArmThatCogsHoldsAsWell) {
     auto& train = hidden.file.simulated.drive_train;
     train.cogging.setConstant(2e-4);
     train.periods_per_turn = 7;
-    // Poles stand anywhere: where they do counts as much as how strong they are.
+    // The phase of the cogging is random; it matters as much as the amplitude.
     const auto turn = static_cast<double>(seed);
     train.cogging_phase = {turn, 2 * turn - 6, 3 - turn};
     train.cogging_phase = train.cogging_phase.unaryExpr(
@@ -229,8 +229,8 @@ TEST(TwinPrediction, OfAnArmThatCogsHoldsAsWell) {
   tell("hidden arms that cog", kArms, worst);
 }
 
-TEST(TwinPrediction, OfAnArmWhoseJointsRubHoldsAsWell) {
-  if (!support::long_form()) GTEST_SKIP() << "12 arms: in the long form alone";
+TEST(TwinPrediction, HoldsForArmsWithJointFriction) {
+  if (!support::long_form()) GTEST_SKIP() << "12 arms: only in the long form";
   constexpr int kArms = 12;
   Worst worst;
   for (int k = 0; k < kArms; ++k) {
@@ -243,7 +243,7 @@ TEST(TwinPrediction, OfAnArmWhoseJointsRubHoldsAsWell) {
   tell("hidden arms whose joints rub", kArms, worst);
 }
 
-TEST(DropTrial, BouncesAsTheLawOfRestitutionSays) {
+TEST(DropTrial, FollowsTheLawOfRestitution) {
   scene::ArmFile arm = scene::load_arm("vintage_phantom").value();
   arm.simulated.plant.coulomb = 0;
   arm.simulated.weight_B.setZero();
@@ -256,9 +256,9 @@ TEST(DropTrial, BouncesAsTheLawOfRestitutionSays) {
     const stability::DropTrial trial{.stiffness = stiffness, .falls = 40};
     const auto bounce = stability::drop_on_wall(arm, trial);
     ASSERT_TRUE(bounce.ok()) << bounce.error().message;
-    // What the late wall gives and friction takes is (K L - b) v^2 all along the contact. The pull
-    // bends the oscillation's middle into the wall, so that it begins and ends before its sides by
-    // an angle of tan = pull / (m w v).
+    // The delayed wall adds and friction removes a power of (K L - b) v^2 during the contact. The
+    // pull shifts the middle of the oscillation into the wall, so the contact begins and ends
+    // earlier by an angle with tan = pull / (m w v).
     const double frequency = std::sqrt(stiffness / tip.mass);
     const double before = std::atan(trial.pull / (tip.mass * frequency * bounce->speed));
     const double of_v2 = (0.5 * std::numbers::pi + before + 0.5 * std::sin(2 * before)) /
@@ -271,7 +271,7 @@ TEST(DropTrial, BouncesAsTheLawOfRestitutionSays) {
   }
 }
 
-TEST(DropTrial, SaysWhenNothingFallsOrBounces) {
+TEST(DropTrial, FailsIfNothingFallsOrBounces) {
   scene::ArmFile arm = scene::load_arm("vintage_phantom").value();
   stability::DropTrial trial;
   trial.pull = 0.5 * arm.simulated.plant.coulomb;

@@ -25,7 +25,7 @@ namespace {
 using support::hidden_arm;
 using support::HiddenArm;
 
-/// Returns how many of so many arms are looked at: a sanitizer takes ten times as long for each.
+/// Returns the number of arms to test out of `all`: a sanitizer takes ten times as long for each.
 std::uint64_t arms_of(std::uint64_t all) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return all > 0 ? 1 : 0;
@@ -41,7 +41,7 @@ std::string text_of(const char* arm) {
   return content.str();
 }
 
-/// What `thimble identify --record` writes of an arm.
+/// Returns the recording that `thimble identify --record` writes for an arm.
 session::Recording recording_of(const scene::ArmFile& file, const char* arm, std::uint64_t seed,
                                 double seconds = 10, bool hold_it = false) {
   session::Recording recording;
@@ -73,7 +73,7 @@ TwinComparison compared(const session::Recording& recording, const scene::ArmFil
   return result->comparison;
 }
 
-TEST(Twin, OfTheSameConstantsRelivesTheMotionToTheEncodersSteps) {
+TEST(Twin, SameConstantsReproduceTheMotion) {
   for (std::uint64_t seed = 1; seed <= arms_of(5); ++seed) {
     const HiddenArm arm = hidden_arm(seed);
     const auto recording = recording_of(arm.file, "vintage_phantom", seed);
@@ -87,7 +87,7 @@ TEST(Twin, OfTheSameConstantsRelivesTheMotionToTheEncodersSteps) {
   }
 }
 
-/// A mistake in an arm file, and the constant that it is in.
+/// An error in an arm file, and the key of the wrong constant.
 struct Mistake {
   const char* key;
   std::function<void(scene::ArmFile&)> make;
@@ -111,21 +111,21 @@ const std::vector<Mistake>& mistakes() {
 }
 
 TEST(Twin, NamesTheConstantThatIsWrong) {
-  // The method was made with arms 101 to 120 in view; these are others.
+  // The method was developed with arms 101 to 120; these are different.
   const bool all = support::long_form();
   const std::uint64_t arms = arms_of(all ? 60 : 4);
   for (std::uint64_t seed = 201; seed <= 200 + arms; ++seed) {
     const HiddenArm arm = hidden_arm(seed);
     const auto recording = recording_of(arm.file, "vintage_phantom", seed, 6);
     for (std::size_t m = 0; m < mistakes().size(); ++m) {
-      // Dry friction in the long form alone, and of the motors one for each arm.
+      // Dry friction only in the long form, and only one of the motors for each arm.
       if (!all && (m == 2 || (m > 2 && m < 6 && m != 3 + seed % 3))) continue;
       const Mistake& mistake = mistakes()[m];
       scene::ArmFile wrong = arm.file;
       mistake.make(wrong);
       const TwinComparison found = compared(recording, wrong);
       ASSERT_FALSE(found.remedies.empty());
-      // What the encoders' steps hide is not named, and nothing else is.
+      // An error hidden by encoder steps is not named, and neither is any other constant.
       const bool hidden = all && m == 1 && found.error_rms < 1.01 * found.step_error;
       const bool named = found.has_remedy() && found.remedies.front().key == mistake.key;
       const bool nothing = hidden && !found.has_remedy();
@@ -135,7 +135,7 @@ TEST(Twin, NamesTheConstantThatIsWrong) {
   }
 }
 
-TEST(Twin, OfAnArmWhoseJointsRubRelivesItsMotionToTheEncodersSteps) {
+TEST(Twin, ArmWithJointFrictionIsReproduced) {
   const HiddenArm arm = support::rigid_rubbing_arm(8000);
   const auto recording = recording_of(arm.file, "vintage_phantom", 1, 3);
   const TwinMotion motion = twin_motion(recording, arm.file).value();
@@ -148,7 +148,7 @@ TEST(Twin, OfAnArmWhoseJointsRubRelivesItsMotionToTheEncodersSteps) {
 }
 
 TEST(Twin, NamesTheJointWhoseFrictionIsWrong) {
-  if (!support::long_form()) GTEST_SKIP() << "3 joints, a minute each: in the long form alone";
+  if (!support::long_form()) GTEST_SKIP() << "3 joints, a minute each: only in the long form";
   const HiddenArm arm = support::rigid_rubbing_arm(8000);
   const auto recording = recording_of(arm.file, "vintage_phantom", 1, 3);
   for (int joint = 0; joint < 3; ++joint) {
@@ -162,22 +162,22 @@ TEST(Twin, NamesTheJointWhoseFrictionIsWrong) {
   }
 }
 
-TEST(Twin, TellsHowManyPercentOfTheMotionItMisses) {
+TEST(Twin, ReportsTheMissedShareOfTheMotion) {
   const HiddenArm arm = hidden_arm(3);
   const auto recording = recording_of(arm.file, "vintage_phantom", 3, 6);
   scene::ArmFile heavier = arm.file;
   heavier.simulated.plant.mass *= 1.3;
   const TwinComparison found = compared(recording, heavier);
   for (const TwinAxis& axis : found.axes) {
-    // Nearly all motion is that of a force on a mass: 1 / 1.3 of it is relived.
+    // Nearly all motion is that of a force on a mass, so 1 / 1.3 of it is reproduced.
     EXPECT_NEAR(axis.fit, 100 / 1.3, 6) << axis.name;
   }
   const TwinRemedy& mass = found.remedies.front();
   EXPECT_NEAR(mass.best, arm.file.simulated.plant.mass, 1e-3 * mass.best);
-  // Differences about a value that is 30 % off still foresee most of it.
+  // Differences around a value with an error of 30 % still predict most of it.
   EXPECT_LT(mass.expected, 0.35 * found.error_rms);
   EXPECT_LT(mass.error_rms, 0.1 * found.error_rms);
-  // The excitation has its strongest lines where a hand feels best, none above 100 Hz.
+  // The excitation has its strongest lines where a hand is most sensitive, and none above 100 Hz.
   double low = 0, high = 0;
   for (const TwinSpectrum& line : found.spectrum) {
     (line.frequency < 50 ? low : high) = std::max(line.frequency < 50 ? low : high, line.error[0]);
@@ -207,13 +207,13 @@ TEST(Twin, ReportsThatOneConstantIsNotEnough) {
   }
 }
 
-TEST(Twin, RelivesAPartOfARecordingWithMissingTicksAndLateReports) {
+TEST(Twin, HandlesMissingTicksAndLateReports) {
   const HiddenArm arm = hidden_arm(4);
   auto recording = recording_of(arm.file, "vintage_phantom", 4, 8);
   auto& ticks = recording.ticks;
   ticks.erase(ticks.begin() + 4000, ticks.begin() + 4007);
   for (std::size_t i = 0; i < ticks.size(); i += 5) {
-    // A report that did not come: the position is the last one's.
+    // A missing report repeats the last position.
     if (i == 0) continue;
     ticks[i].fresh = false;
     ticks[i].q = ticks[i - 1].q;
@@ -225,10 +225,10 @@ TEST(Twin, RelivesAPartOfARecordingWithMissingTicksAndLateReports) {
   EXPECT_LT(found.seconds, 5);
   EXPECT_GT(found.seconds, 4);
   ASSERT_EQ(found.told.size(), 1U);
-  EXPECT_NE(found.told.front().find("cut off"), std::string::npos);
+  EXPECT_NE(found.told.front().find("truncated"), std::string::npos);
 }
 
-TEST(Twin, OfAPolhemIsAsNear) {
+TEST(Twin, PolhemIsReproducedEquallyWell) {
   scene::ArmFile file = scene::load_arm("polhem").value();
   const auto recording = recording_of(file, "polhem", 5, 4);
   const TwinComparison found = compared(recording, file);
@@ -238,7 +238,7 @@ TEST(Twin, OfAPolhemIsAsNear) {
   EXPECT_EQ(heavier.remedies.front().key, "simulation.tip.mass");
 }
 
-TEST(Twin, RefusesWhatItCannotCompare) {
+TEST(Twin, RefusesUnsuitableRecordings) {
   const HiddenArm arm = hidden_arm(6);
   const auto recording = recording_of(arm.file, "vintage_phantom", 6, 4);
   const auto refused = [&](const std::function<void(session::Recording&)>& change,
@@ -248,8 +248,8 @@ TEST(Twin, RefusesWhatItCannotCompare) {
     return support::refuses(compare_twin(other, file, {}), why);
   };
   const auto same = [](session::Recording&) {};
-  EXPECT_TRUE(refused(same, scene::load_arm("polhem").value(), "another arm"));
-  EXPECT_TRUE(refused(same, scene::load_arm("woodenhaptics").value(), "another arm"));
+  EXPECT_TRUE(refused(same, scene::load_arm("polhem").value(), "not from the arm"));
+  EXPECT_TRUE(refused(same, scene::load_arm("woodenhaptics").value(), "not from the arm"));
   EXPECT_TRUE(refused(same, scene::load_arm("falcon").value(), "has no twin"));
   EXPECT_TRUE(refused(
       [](auto& other) {
@@ -271,7 +271,7 @@ TEST(Twin, RefusesWhatItCannotCompare) {
       },
       arm.file, "too short"));
   EXPECT_TRUE(
-      support::refuses(compare_twin(recording, arm.file, {.window = 6, .span = {}}), "No stretch"));
+      support::refuses(compare_twin(recording, arm.file, {.window = 6, .span = {}}), "No part"));
   scene::ArmFile weightless = arm.file;
   weightless.simulated.plant.mass = 0;
   EXPECT_TRUE(refused(same, weightless, "mass"));

@@ -96,10 +96,11 @@ void put_cables(Identified& found) {
     if (rotors.shows_coulomb[i]) cable.coulomb = by_gain(rotors.coulomb[i], constants.gain[i]);
   }
   if (found.lines.elastic.misfit > kLinesMisfitMost) {
-    found.against.push_back(fmt::format(
-        "Above {:g} Hz the arm moves neither like a rigid one nor like one with a mass behind each "
-        "cable (chi^2 {:.0f} per degree of freedom): play, a second resonance or a hand do that.",
-        LineForces::kLowest, found.lines.elastic.misfit));
+    found.against.push_back(
+        fmt::format("Above {:g} Hz the motion fits neither a rigid arm nor an arm with a mass "
+                    "behind each cable (chi^2 {:.0f} per degree of freedom). Possible causes: "
+                    "backlash, a second resonance or a hand.",
+                    LineForces::kLowest, found.lines.elastic.misfit));
   }
   const auto hz = [&](std::size_t i) { return (*constants.cables)[i].antiresonance.value; };
   const std::size_t softest =
@@ -107,10 +108,9 @@ void put_cables(Identified& found) {
   if (!found.against.empty() && hz(softest) < LineForces::kLowest) {
     found.against.insert(
         found.against.begin(),
-        fmt::format(
-            "The link of joint {} oscillates on its cable at {:.0f} Hz, and cables are looked "
-            "for from {:g} Hz on: this one may be too soft to be identified.",
-            softest + 1, hz(softest), LineForces::kLowest));
+        fmt::format("The link of joint {} oscillates on its cable at {:.0f} Hz, but cables are "
+                    "identified from {:g} Hz on. This cable may be too soft to be identified.",
+                    softest + 1, hz(softest), LineForces::kLowest));
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const CableConstants& cable = (*constants.cables)[i];
@@ -118,12 +118,12 @@ void put_cables(Identified& found) {
         cable.stiffness.plus_minus < kCableUnknownMost * cable.stiffness.value) {
       continue;
     }
-    found.against.push_back(fmt::format(
-        "The cable of joint {} stretches (its link oscillates on it at {:.0f} Hz), but motor and "
-        "cable are not known well enough to be written: {:.2g} +- {:.2g} kg m^2, {:.3g} +- {:.2g} "
-        "N m/rad. Take more time (--seconds).",
-        i + 1, cable.antiresonance.value, cable.inertia.value, cable.inertia.plus_minus,
-        cable.stiffness.value, cable.stiffness.plus_minus));
+    found.against.push_back(
+        fmt::format("The cable of joint {} stretches (its link oscillates on it at {:.0f} Hz), but "
+                    "the constants of motor and cable are too uncertain to be written: {:.2g} +- "
+                    "{:.2g} kg m^2, {:.3g} +- {:.2g} N m/rad. Record for longer (--seconds).",
+                    i + 1, cable.antiresonance.value, cable.inertia.value, cable.inertia.plus_minus,
+                    cable.stiffness.value, cable.stiffness.plus_minus));
   }
 }
 

@@ -186,8 +186,7 @@ driver::Result<ArmMotion> motion_of_links(const ArmMotion& motion, const CableFi
     sample.G = J.inverse();
     if (!sample.p_BT.allFinite() || !sample.G.allFinite()) {
       return driver::Error{
-          "The links behind the cables that were found would have been out of reach, so these are "
-          "not the arm's cables."};
+          "The cables found would put the links out of reach, so they are not the arm's cables."};
     }
     seen.samples.push_back(sample);
   }

@@ -30,7 +30,7 @@ struct TwoMass {
 
   Eigen::Matrix<double, kCount, 1> theta = Eigen::Matrix<double, kCount, 1>::Zero();
   Eigen::Matrix<double, kCount, kCount> covariance = Eigen::Matrix<double, kCount, kCount>::Zero();
-  double misfit = 0;  ///< chi^2 per degree of freedom, with the noise between the lines.
+  double misfit = 0;  ///< chi^2 per degree of freedom, relative to the noise between the lines.
 
   /// Returns the natural frequencies of a joint, Hz: of the link on its cable (motor held), and of
   /// motor and link against each other.

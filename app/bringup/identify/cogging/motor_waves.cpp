@@ -52,7 +52,7 @@ class WavesOfMotion {
                 double delay)
       : motion_(motion) {
     found_.searched = periods.best > 0;
-    found_.not_done = found_.searched ? "" : "the motors were turned too little to show any.";
+    found_.not_done = found_.searched ? "" : "not identified; the motors did not turn far enough.";
     found_.least = periods.least;
     found_.most = periods.most;
     found_.periods = periods.best;

@@ -32,7 +32,7 @@ inline constexpr double kFewPeriods = 24;
 struct MotorWaves {
   bool searched = false;  ///< A search was made.
   /// Reason for no search, to follow "Cogging and ripple of the motors: "; empty after a search.
-  std::string not_done = "not looked for.";
+  std::string not_done = "not searched.";
   /// Range of periods per turn that was searched; equal if the arm file names the number.
   double least = 0, most = 0;
   double periods = 0;  ///< Number of periods found.

@@ -58,8 +58,8 @@ driver::Result<WrittenLinks> written_links(const SeenLinks& seen, const driver::
   if (check_written(at(0))) return at(0);
   if (auto good = check_written(at(most)); !(most > 0) || !good) {
     return driver::Error{
-        "No links move as this arm does: with what was found, inertia would be below zero in some "
-        "pose. Look for play and for what rubs, and take more time (--seconds)."};
+        "No physical links fit this motion: the inertia would be negative in some pose. Check the "
+        "arm for backlash and rubbing parts, and record for longer (--seconds)."};
   }
   // More coupling means more inertia everywhere.
   for (int round = 0; round < 60; ++round) {

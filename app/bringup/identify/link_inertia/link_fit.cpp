@@ -48,8 +48,8 @@ class LinkSearch {
     if (table_.torn() != nullptr) return MotionEquations::torn_error(*table_.torn());
     if (table_.motions().size() < 3 || table_.count() < 600) {
       return driver::Error{
-          "The motions are too short or at places too few to tell links, or the tip stood still "
-          "for most of them."};
+          "Links cannot be identified: the motions are too short or too few, or the tip was at "
+          "rest most of the time."};
     }
     constexpr std::size_t kSome = 8;  // enough for a first search
     double delay = coarse_delay([this](double at) { return residual_at(at, kSome); });
@@ -149,8 +149,8 @@ class LinkSearch {
     for (const double gain : gains_of(with.theta)) {
       if (gain > 0 && (!table_.loaded() || with.theta[kAddedColumn] > 0)) continue;
       return driver::Error{
-          "The motions at the places are not those of an arm that follows its motors: a hand, or "
-          "something that the tip ran into, does that."};
+          "The arm did not follow its motors in these motions: a hand or an obstacle moved the "
+          "tip."};
     }
     const auto links = with.theta.segment<kLinkConstants>(LinkFit::kInertia);
     const LinkColumns deviation = with.covariance.diagonal().cwiseSqrt();

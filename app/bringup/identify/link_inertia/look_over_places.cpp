@@ -9,7 +9,7 @@ driver::Result<LinkFit> fit_over(const OverPlaces& over, const scene::ArmFile& f
   auto fit = fit_links(std::get<driver::SerialArm>(file.model.geometry), over.motions);
   if (!fit || !fit->links || fit->theta[LinkFit::kMass] > 0) return fit;
   return driver::Error{
-      "The mass at the tip came out below zero: something else than the arm's own links moved it."};
+      "The fitted mass at the tip is negative: something other than the arm's links moved it."};
 }
 
 }  // namespace
@@ -22,16 +22,17 @@ driver::Result<OverPlaces> look_over_places(BenchArm& bench, const scene::ArmFil
   OverPlaces over;
   if (places == 0) return over;
   if (!file.is<driver::SerialArm>()) {
-    over.not_done = "only for arms of a yaw and two links; links of other builds have no model.";
+    over.not_done =
+        "available only for arms with a yaw joint and two links; other geometries have no link "
+        "model.";
     return over;
   }
   if (stretches) {
-    over.not_done =
-        "not done, for behind cables that stretch the links' own motion is not seen well enough.";
+    over.not_done = "not measured; cables that stretch hide the motion of the links.";
     return over;
   }
   if (held) {
-    over.not_done = "not done, for something holds the tip, which was not led away from it.";
+    over.not_done = "not measured; something holds the tip, so it was not moved to other places.";
     return over;
   }
   // The earlier recording ends here.
@@ -39,14 +40,14 @@ driver::Result<OverPlaces> look_over_places(BenchArm& bench, const scene::ArmFil
   auto motions = record_places(bench, file, order, places_in(file, places), stop);
   if (!motions) {
     if (stop.load() || bench.fault() != driver::Fault::kNone) return motions.error();
-    over.not_done = "not done. " + motions.error().message;
+    over.not_done = "not measured. " + motions.error().message;
     return over;
   }
   for (const ArmMotion& motion : *motions) over.motions.push_back(freed(motion));
   over.motions.insert(over.motions.begin(), first);
   auto fit = fit_over(over, file);
   if (!fit) {
-    over.not_done = "not told. " + fit.error().message;
+    over.not_done = "not identified. " + fit.error().message;
     return over;
   }
   over.fit = std::move(fit).value();
@@ -61,8 +62,8 @@ driver::Result<void> add_loaded(OverPlaces& over, const ArmMotion& loaded,
   if (!fit) return fit.error();
   if (!fit->links) {
     return driver::Error{
-        "The motion with the known mass is not that of the arm whose links were seen without it: "
-        "fix the mass so that it does not swing."};
+        "The motion with the known mass does not fit the links identified without it. Fix the mass "
+        "so that it does not swing."};
   }
   over.fit = std::move(fit).value();
   return {};

@@ -20,7 +20,7 @@ namespace thimble::bringup {
 struct OverPlaces {
   std::vector<ArmMotion> motions;  ///< Fitted motions: first that about one pose, then the others.
   std::optional<LinkFit> fit;
-  std::string not_done = "not asked for.";  ///< Reason for no fit; empty if there is one.
+  std::string not_done = "not requested.";  ///< Reason for no fit; empty if there is one.
 
   /// Returns whether links were seen; the constants then come from the fit.
   bool links() const { return fit && fit->links; }

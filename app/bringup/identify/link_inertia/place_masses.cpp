@@ -56,7 +56,7 @@ MassRange mass_range(const LinkFit& fit, const scene::ArmFile& file) {
 
 std::string place_table(const LinkFit& fit, const scene::ArmFile& file) {
   std::string text =
-      "Apparent mass along x, y and z of the base, g, where the tip was moved (world, mm):\n";
+      "Apparent mass along x, y and z of the base, g, at each place of the tip (world, mm):\n";
   for (const PlaceMass& place : masses_at_places(fit, file)) {
     text += fmt::format("  {:>5.0f} {:>5.0f} {:>5.0f}  ", 1e3 * place.p_W.x(), 1e3 * place.p_W.y(),
                         1e3 * place.p_W.z());
@@ -71,7 +71,7 @@ std::string place_table(const LinkFit& fit, const scene::ArmFile& file) {
 std::string range_text(const LinkFit& fit, const scene::ArmFile& file) {
   const MassRange range = mass_range(fit, file);
   return fmt::format(
-      "Over the workspace, where the arm moves easily: {:.5g} +- {:.2g} to {:.5g} +- "
+      "Over the part of the workspace where the arm moves easily: {:.5g} +- {:.2g} to {:.5g} +- "
       "{:.2g} g.",
       1e3 * range.least.value, 1e3 * range.least.plus_minus, 1e3 * range.most.value,
       1e3 * range.most.plus_minus);

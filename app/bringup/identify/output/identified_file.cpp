@@ -23,9 +23,8 @@ namespace {
 
 driver::Error bad_form(std::string_view key) {
   return driver::Error{
-      fmt::format("The arm file has no {} that could be exchanged; write each of its keys on a "
-                  "line of its own, "
-                  "as app/arms/vintage_phantom.yaml does.",
+      fmt::format("The arm file has no {} that can be replaced. Write each key on a separate line, "
+                  "as in app/arms/vintage_phantom.yaml.",
                   key)};
 }
 
@@ -51,7 +50,7 @@ driver::Result<void> put_torques(const YAML::Node& root, const scene::ArmFile& b
   const std::string values = fmt::format(
       "[{:.6g}, {:.6g}, {:.6g}]  # N m/A at the motor{} [I {}, {}, +- {:.2g}{}]", torque[0],
       torque[1], torque[2], before.is<driver::DeltaArm>() ? ", 1 A being 1000 motor values" : "",
-      mark.date, mark.arm, error, found.absolute ? "" : "; their mean is the declared one's");
+      mark.date, mark.arm, error, found.absolute ? "" : "; their mean is the declared value");
   const YAML::Node joints = root["joints"];
   bool put = false;
   if (joints && joints["torque_constant"]) {
@@ -179,7 +178,7 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
   try {
     root = YAML::Load(text);
   } catch (const YAML::Exception& wrong) {
-    return driver::Error{std::string("The arm file is no YAML: ") + wrong.what()};
+    return driver::Error{std::string("The arm file is not valid YAML: ") + wrong.what()};
   }
   auto was = scene::YamlFile::parse(text, "arm file");
   if (!was) return was.error();
@@ -188,9 +187,9 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
   if (!before->can_simulate) return bad_form("section simulation");
   if (before->simulated.links.named() && !found.links_sought) {
     return driver::Error{
-        "The arm file names links (simulation.links), and the arm was not moved over its workspace "
-        "to measure them: their inertia would be in the mass of the tip as well. Identify with "
-        "--places, or take that section out of a copy and name it by --arm."};
+        "The arm file has simulation.links, but links were not measured; the mass of the tip would "
+        "contain their inertia a second time. Identify with --places, or remove the section from a "
+        "copy and pass it with --arm."};
   }
   FileLines lines(text);
   const YAML::Node tip = root["simulation"]["tip"];
@@ -221,8 +220,8 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
   }
   if (found.cables && before->is<driver::DeltaArm>()) {
     return driver::Error{
-        "The cables of this arm stretch, which is not simulated of its build; nothing was "
-        "written."};
+        "The cables of this arm stretch, but the simulation has no drive train for its geometry; "
+        "no file was written."};
   }
   if (found.cables && !put_train(root["simulation"], *found.cables, mark, lines)) {
     return bad_form("section drive_train");
@@ -281,8 +280,7 @@ driver::Result<void> check_new_file(const std::filesystem::path& new_file) {
   std::error_code failed;
   if (!std::filesystem::exists(new_file, failed) && !failed) return {};
   return driver::Error{new_file.string() +
-                       " is there already, and no file is written over; name another by "
-                       "--output."};
+                       " already exists and is not overwritten. Pass another file with --output."};
 }
 
 driver::Result<void> write_identified(const std::filesystem::path& arm_file,

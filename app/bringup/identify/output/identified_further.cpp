@@ -107,7 +107,7 @@ class Further {
     jitter_ = 0;
     return seen == 0 ||
            lines_.add_behind(wire["delay_out"],
-                             "# jitter: " + spread + "; not simulated unless you put it in");
+                             "# jitter: " + spread + "; not simulated unless you add it");
   }
 
   bool put_saturation() {
@@ -126,7 +126,7 @@ class Further {
     }
     if (all.empty()) return true;
     return exchange(simulation_["motors"]["current_max"], least,
-                    "A, of all motors the least that was seen (" + all + ")", error);
+                    "A, the lowest saturation of all motors (" + all + ")", error);
   }
 
   /// Writes cogging, ripple and friction of joints. The drive train of a delta arm is not
@@ -203,8 +203,8 @@ class Further {
 
 driver::Error bad_form() {
   return driver::Error{
-      "The arm file has no sections firmware, wire and motors in which values could be exchanged; "
-      "write each key on a line of its own, as app/arms/vintage_phantom.yaml does."};
+      "The arm file has no sections firmware, wire and motors with values that can be replaced. "
+      "Write each key on a separate line, as in app/arms/vintage_phantom.yaml."};
 }
 
 }  // namespace
@@ -215,7 +215,7 @@ driver::Result<std::string> further_text(const std::string& text, const Identifi
   try {
     root = YAML::Load(text);
   } catch (const YAML::Exception& wrong) {
-    return driver::Error{std::string("The arm file is no YAML: ") + wrong.what()};
+    return driver::Error{std::string("The arm file is not valid YAML: ") + wrong.what()};
   }
   auto was = scene::YamlFile::parse(text, "arm file");
   if (!was) return was.error();

@@ -27,9 +27,9 @@ std::vector<std::pair<std::string, std::string>> entries_of(const LinkConstants&
   };
   add("yaw_b", links.yaw_b, "kg m^2");
   add("yaw_c", links.yaw_c, "kg m^2");
-  add("coupling", links.coupling, "kg m^2, the least that links can have");
+  add("coupling", links.coupling, "kg m^2, the minimum for physical links");
   add("moment_b", links.moment_b, "kg m");
-  add("moment_c", links.moment_c, "kg m, what weighs less than nothing at the tip");
+  add("moment_c", links.moment_c, "kg m, any negative weight at the tip");
   return all;
 }
 
@@ -74,8 +74,8 @@ driver::Result<void> put_links(const YAML::Node& simulation, const ArmConstants&
                                const IdentifiedMark& mark, FileLines& lines) {
   if (put(simulation, found, mark, lines)) return {};
   return driver::Error{
-      "The arm file has a section simulation.links that cannot be exchanged; write each of its "
-      "keys on a line of its own."};
+      "The section simulation.links of the arm file cannot be replaced. Write each key on a "
+      "separate line."};
 }
 
 bool reads_links(const device_sim::LinkSettings& read, const ArmConstants& found) {

@@ -34,14 +34,14 @@ driver::Error MotionEquations::torn_error(const ArmMotion& motion) {
   for (const MotionSample& sample : motion.samples) missing += sample.fresh ? 0 : 1;
   if (2 * motion.jumped > missing) {
     return driver::Error{fmt::format(
-        "The joints jumped in {:.0f} % of the ticks, farther than the driver believes of an arm, "
-        "so their reports were dropped and the motion was not seen well enough. A motor oscillates "
-        "on its cable under the force that holds the tip, or its encoder loses counts.",
+        "The motion cannot be used: in {:.0f} % of the ticks a joint jumped farther than the "
+        "driver accepts, and the report was dropped. A motor oscillates on its cable under the "
+        "force that holds the tip, or its encoder loses counts.",
         100 * static_cast<double>(motion.jumped) / static_cast<double>(motion.samples.size()))};
   }
   return driver::Error{
-      "Too many ticks came without a new report, so the motion was not seen well enough. Run "
-      "`thimble doctor`: it says what makes reports late."};
+      "The motion cannot be used: too many ticks had no new report. Run `thimble doctor` to find "
+      "what delays reports."};
 }
 
 void MotionEquations::find_velocities() {

@@ -27,7 +27,7 @@ class CalibrationTest : public ::testing::Test {
     setenv("XDG_CONFIG_HOME", (support::scratch_folder() / "config").c_str(), 1);
   }
 
-  /// What an arm with this calibration reports with its tip at p_WT.
+  /// Returns the reading of an arm with the calibration `truth` and its tip at p_WT.
   static driver::ArmReading reading_at(const scene::ArmFile& truth, const Eigen::Vector3d& p_WT) {
     const auto q =
         driver::inverse(truth.model.geometry, truth.R_WB.transpose() * (p_WT - truth.p_WB));
@@ -46,7 +46,7 @@ TEST_F(CalibrationTest, FindsHomeAndSignsOfAnyArmFromThreeMovements) {
   const scene::ArmFile file = vintage();
   support::Random random(111);
   for (int i = 0; i < 200; ++i) {
-    // An arm whose encoders and motors are wired any way, switched on with its counters anywhere.
+    // An arm with random wiring of encoders and motors, switched on with random counters.
     scene::Calibration truth;
     for (std::size_t k = 0; k < 3; ++k) {
       const int flip = random.bits() % 2 == 0 ? 1 : -1;
@@ -59,7 +59,7 @@ TEST_F(CalibrationTest, FindsHomeAndSignsOfAnyArmFromThreeMovements) {
     const Eigen::Vector3d home(0, 0, 0);  // the tip at home is the world's origin
     std::array<driver::ArmReading, 3> moved;
     for (int axis = 0; axis < 3; ++axis) {
-      // People do not move along an axis exactly, nor by 5 cm.
+      // A user moves neither exactly along an axis nor by exactly 5 cm.
       const Eigen::Vector3d step = random.uniform(0.035, 0.06) *
                                    (Eigen::Vector3d::Unit(axis) + random.in_box(0.25)).normalized();
       moved[static_cast<std::size_t>(axis)] = reading_at(true_file, home + step);
@@ -70,12 +70,12 @@ TEST_F(CalibrationTest, FindsHomeAndSignsOfAnyArmFromThreeMovements) {
     EXPECT_EQ(found->encoder_sign, truth.encoder_sign);
     EXPECT_EQ(found->motor_sign, truth.motor_sign);
     for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_NEAR(found->home_counts[k], truth.home_counts[k], 1);  // a count of rounding
+      EXPECT_NEAR(found->home_counts[k], truth.home_counts[k], 1);  // one count of rounding
     }
   }
 }
 
-TEST_F(CalibrationTest, RefusesMovementsThatSayNothing) {
+TEST_F(CalibrationTest, RefusesAmbiguousMovements) {
   const scene::ArmFile file = vintage();
   const auto home = reading_at(file, {0, 0, 0});
   const auto still =
@@ -89,7 +89,7 @@ TEST_F(CalibrationTest, RefusesMovementsThatSayNothing) {
   EXPECT_NE(unclear.error().message.find("do not tell"), std::string::npos);
 }
 
-TEST_F(CalibrationTest, IsKeptPerArmAndComesBackUnchanged) {
+TEST_F(CalibrationTest, IsStoredPerArmAndReadUnchanged) {
   const scene::Calibration kept{
       .home_counts = {12, -7700, 0}, .encoder_sign = {-1, 1, -1}, .motor_sign = {1, -1, -1}};
   EXPECT_FALSE(scene::load_calibration("A/../B 1")->has_value());
@@ -103,7 +103,7 @@ TEST_F(CalibrationTest, IsKeptPerArmAndComesBackUnchanged) {
   EXPECT_NE(wrong.error().message.find(":1"), std::string::npos);
 }
 
-/// The check of a simulated arm whose driver believes `believed` of it.
+/// Returns the feel check of a simulated arm whose driver uses the file `believed`.
 std::vector<CheckResult> check_with(const scene::ArmFile& believed, bool& prompted_all) {
   auto bench = BenchArm::open(believed, std::nullopt, "", feel_check_hand({0, 0, 0}),
                               scene::kFeelCheckForceMax);
@@ -127,7 +127,7 @@ TEST_F(CalibrationTest, FeelCheckPassesAGoodArmAndTimesItsWatchdog) {
   }
 }
 
-TEST_F(CalibrationTest, FeelCheckEndsAtTheFirstStepThatIsLeft) {
+TEST_F(CalibrationTest, FeelCheckEndsAtASkippedStep) {
   auto bench = BenchArm::open(vintage(), std::nullopt, "", feel_check_hand({0, 0, 0}),
                               scene::kFeelCheckForceMax);
   ASSERT_TRUE(bench);
@@ -148,7 +148,7 @@ TEST_F(CalibrationTest, FeelCheckFindsALateWatchdog) {
   EXPECT_FALSE(results.back().passed) << results.back().text;
 }
 
-/// A mistake in the wiring of an arm, and the sentence that names it.
+/// A wiring fault of an arm, and the sentence that reports it.
 struct Miswired {
   const char* name;
   void (*break_it)(device_sim::FirmwareSettings&);
@@ -185,12 +185,12 @@ const Miswired kMiswired[] = {
        f.wiring.motor_of = {0, 2, 1};
        f.wiring.motor_gain[2] = -1;
      },
-     "they are swapped"},
+     "They are swapped"},
 };
 const char* const kArmFiles[] = {"vintage_phantom", "woodenhaptics", "woodenhaptics_teensy",
                                  "polhem", "falcon"};
 
-/// Each arm with each mistake.
+/// Each arm with each wiring fault.
 class FeelCheckOfAMiswiredArm : public testing::TestWithParam<std::tuple<const char*, Miswired>> {};
 
 TEST_P(FeelCheckOfAMiswiredArm, NamesTheWireAndPushesNoHarder) {
@@ -226,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(Arms, FeelCheckOfAMiswiredArm,
                                   std::get<1>(instance.param).name;
                          });
 
-TEST_F(CalibrationTest, FeelCheckPassesEveryGoodArmAndPushesNoHarder) {
+TEST_F(CalibrationTest, FeelCheckPassesGoodArmsWithinItsLimit) {
   for (const char* arm : kArmFiles) {
     SCOPED_TRACE(arm);
     const auto file = scene::load_arm(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
@@ -245,7 +245,7 @@ TEST_F(CalibrationTest, FeelCheckPassesEveryGoodArmAndPushesNoHarder) {
   }
 }
 
-TEST_F(CalibrationTest, FeelCheckSaysThatAnArmHasNoWatchdog) {
+TEST_F(CalibrationTest, FeelCheckReportsAMissingWatchdog) {
   scene::ArmFile careless = vintage();
   careless.simulated.firmware.watchdog_ns = INT64_MAX / 4;
   bool prompted_all = false;

@@ -1,4 +1,4 @@
-// Gravity compensation: what an arm file says its motors carry.
+// Gravity compensation by the motors, as an arm file specifies it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,9 +31,9 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
   text.replace(at, from.size(), to);
 }
 
-/// The folder of a scene in which nothing is touched, with an arm that weighs kWeight and that
-/// nobody holds, whose motors carry `carried` (N).
-/// With `links` it is links that weigh, and `carried` what their moments are carried by, a share.
+/// Returns a folder with a scene without contact. Its arm has the weight kWeight, no hand, and
+/// motors that carry `carried` (N). With `links` the links have the weight, and `carried` is the
+/// carried share of their moments.
 std::filesystem::path files(double carried, bool links = false,
                             const std::string& at = "[0, 0, 0]") {
   const auto folder = support::scratch_folder() / "carried_weight";
@@ -67,7 +67,7 @@ std::filesystem::path files(double carried, bool links = false,
   return folder;
 }
 
-/// What a run shows of where the tip was and of its forces.
+/// Motion of the tip and its forces in a run.
 class Seen final : public session::TickObserver {
  public:
   void take(const driver::TickRecord& record) noexcept override {
@@ -81,7 +81,7 @@ class Seen final : public session::TickObserver {
     if (!first) first = record;
     last = record;
   }
-  /// How far the tip went from where it began, m.
+  /// Returns the distance from the first to the last position of the tip, m.
   double way() const {
     return std::hypot(last.p_WT[0] - first->p_WT[0], last.p_WT[1] - first->p_WT[1],
                       last.p_WT[2] - first->p_WT[2]);
@@ -99,7 +99,7 @@ struct WholeRun {
   session::RunFigures figures;
 };
 
-/// Runs the scene of a folder; `law` asks for forces in its place, if there is one.
+/// Runs the scene of a folder, with the force law `law` instead of the scene's if one is given.
 template <class Law = std::nullptr_t>
 WholeRun run_in(const std::filesystem::path& folder, Law law = {}) {
   WholeRun result;
@@ -123,10 +123,10 @@ WholeRun run(double carried, Law law = {}) {
   return run_in(files(carried), law);
 }
 
-TEST(CarriedWeight, LetsATipFloatThatFallsWithoutIt) {
+TEST(CarriedWeight, KeepsAHeavyTipInPlace) {
   const WholeRun falls = run(0), floats = run(kWeight);
   EXPECT_LT(falls.seen.lowest, -0.03);
-  // It sinks until the soft start lets through what friction leaves.
+  // It sinks until the soft start passes the part of the weight that friction does not hold.
   EXPECT_GT(floats.seen.lowest, -0.002);
   EXPECT_LT(floats.seen.highest, 1e-4);
   EXPECT_NEAR(floats.seen.last.v_WT[2], 0, 1e-4);
@@ -138,12 +138,12 @@ TEST(CarriedWeight, LetsATipFloatThatFallsWithoutIt) {
   EXPECT_EQ(session::summary(falls.figures).find("of the arm"), std::string::npos);
 }
 
-TEST(CarriedWeight, LetsLinksFloatInEachPoseThatFallWithoutIt) {
+TEST(CarriedWeight, KeepsHeavyLinksInPlaceInEachPose) {
   double least = 1, most = 0;  // N
   for (const char* at : {"[0, 0, 0]", "[0.04, 0.03, 0.05]", "[-0.03, -0.05, 0.04]"}) {
     const WholeRun falls = run_in(files(0, true, at)), floats = run_in(files(1, true, at));
     EXPECT_GT(falls.seen.way(), 0.02) << at;
-    // It sinks until the soft start lets through what friction leaves.
+    // It sinks until the soft start passes the part of the weight that friction does not hold.
     EXPECT_LT(floats.seen.way(), 0.1 * falls.seen.way()) << at;
     const auto& last = floats.seen.last;
     EXPECT_EQ(
@@ -171,7 +171,7 @@ TEST(CarriedWeight, LinksTakeAtMostAThirdOfTheGateForce) {
                                "in the middle of the workspace"));
 }
 
-TEST(CarriedWeight, CountsTowardsTheForceLimitAndNeverGoesBeyondIt) {
+TEST(CarriedWeight, CountsTowardsTheForceLimit) {
   const auto up = [](const driver::DeviceState&) noexcept {
     return driver::ForceCommand{.f_T_W = {0, 0, 5}, .touch = {}};
   };
@@ -181,8 +181,8 @@ TEST(CarriedWeight, CountsTowardsTheForceLimitAndNeverGoesBeyondIt) {
   EXPECT_GT(pushed.figures.gate.limited, 0U);
 }
 
-TEST(CarriedWeight, WrongOneDoesNotMakeAFreeTipRunAway) {
-  // Twenty times what the arm weighs; without the trial 3 m/s over 0.3 m.
+TEST(CarriedWeight, WrongValueDoesNotMakeAFreeTipRunAway) {
+  // Twenty times the arm's weight; without the check the tip would reach 3 m/s over 0.3 m.
   const WholeRun wrong = run(20 * kWeight);
   EXPECT_LT(wrong.seen.highest, 0.11);
   EXPECT_LT(wrong.seen.fastest, 1.0);
@@ -197,7 +197,7 @@ TEST(CarriedWeight, IsGoneWithEveryOtherForceAfterAFault) {
   EXPECT_EQ(run_broken.seen.last.f_sent_W[2], 0);
 }
 
-TEST(CarriedWeight, IsAThirdOfTheGatesForceAtTheMost) {
+TEST(CarriedWeight, IsAtMostAThirdOfTheGateForce) {
   EXPECT_TRUE(support::refuses(scene::load_arm(files(2) / "arm.yaml"), "a third of the gate's"));
   EXPECT_TRUE(scene::load_arm(files(1.6) / "arm.yaml").ok());
   EXPECT_EQ(scene::load_arm("polhem").value().carried_weight, 0);

@@ -10,7 +10,7 @@
 namespace thimble::bringup {
 namespace {
 
-/// A machine on which all is well, with a WoodenHaptics arm; each test breaks one thing.
+/// A correctly configured machine with a WoodenHaptics arm; each test breaks one part of it.
 class DoctorTest : public ::testing::Test {
  protected:
   DoctorTest()
@@ -37,7 +37,7 @@ class DoctorTest : public ::testing::Test {
 
   void plug_falcon() const { usb_.plug("1-2", "0403", "cb48", "F1", 1, 5); }
 
-  /// Finds what the doctor says with these words; fails the test if there is nothing.
+  /// Returns the finding that contains these words; fails the test if there is none.
   Finding finding(const std::string& words) const {
     for (const Finding& found : examine(system_)) {
       if (found.what.find(words) != std::string::npos) return found;
@@ -60,34 +60,35 @@ class DoctorTest : public ::testing::Test {
   SystemInfo system_;
 };
 
-TEST_F(DoctorTest, FindsNothingWrongWithAMachineOnWhichAllIsWell) {
+TEST_F(DoctorTest, ReportsNoProblemOnAGoodMachine) {
   plug_woody();
   plug_falcon();
   EXPECT_EQ(troubles(), 0u);
 }
 
-TEST_F(DoctorTest, MissesTheRule) {
+TEST_F(DoctorTest, ReportsAMissingRule) {
   plug_woody();
   std::filesystem::remove(usb_.root() / "etc/udev/rules.d/70-thimble.rules");
   EXPECT_EQ(finding("rule is not installed").health, Health::kProblem);
   EXPECT_NE(finding("rule is not installed").mend.find("udevadm"), std::string::npos);
 }
 
-TEST_F(DoctorTest, SaysWhyANodeMayNotBeOpened) {
+TEST_F(DoctorTest, ExplainsMissingAccess) {
   plug_woody();
-  std::filesystem::remove(usb_.root() / "dev/hidraw3");  // root may open all that exists
+  std::filesystem::remove(usb_.root() / "dev/hidraw3");  // root has access to every existing file
   system_.in_plugdev = false;
-  EXPECT_EQ(finding("may not open /dev/hidraw3").health, Health::kProblem);
-  EXPECT_NE(finding("may not open").mend.find("usermod -aG plugdev"), std::string::npos);
+  EXPECT_EQ(finding("have no access to /dev/hidraw3").health, Health::kProblem);
+  EXPECT_NE(finding("have no access to").mend.find("usermod -aG plugdev"), std::string::npos);
   system_.in_plugdev = true;
-  EXPECT_NE(finding("may not open").mend.find("udevadm trigger"), std::string::npos);
+  EXPECT_NE(finding("have no access to").mend.find("udevadm trigger"), std::string::npos);
   std::filesystem::remove(usb_.root() / "etc/udev/rules.d/70-thimble.rules");
-  EXPECT_NE(finding("may not open").what.find("rule is missing"), std::string::npos);
+  EXPECT_NE(finding("have no access to").what.find("rule is missing"), std::string::npos);
 }
 
-TEST_F(DoctorTest, NamesADriverThatIsMissingOrInTheWay) {
+TEST_F(DoctorTest, ReportsMissingAndConflictingDrivers) {
   usb_.plug("1-1", "1234", "0006", "WH01", 1, 2);
-  EXPECT_NE(finding("no kernel driver has it").mend.find("modprobe usbhid"), std::string::npos);
+  EXPECT_NE(finding("no kernel driver is bound to it").mend.find("modprobe usbhid"),
+            std::string::npos);
   usb_.plug("1-3", "16c0", "0483", "7654321", 1, 4);
   EXPECT_NE(finding("no serial port").mend.find("modprobe cdc_acm"), std::string::npos);
   plug_falcon();
@@ -97,7 +98,7 @@ TEST_F(DoctorTest, NamesADriverThatIsMissingOrInTheWay) {
   EXPECT_NE(finding("ftdi_sio").mend.find("1-2:1.0"), std::string::npos);
 }
 
-TEST_F(DoctorTest, SeesWhatKeepsTheVendorsLibraryFromATouch) {
+TEST_F(DoctorTest, FindsProblemsOfTheTouchLibrary) {
   const auto about = [&](const std::string& words) {
     const auto findings = examine(system_);
     return std::any_of(findings.begin(), findings.end(), [&](const Finding& found) {
@@ -105,10 +106,10 @@ TEST_F(DoctorTest, SeesWhatKeepsTheVendorsLibraryFromATouch) {
     });
   };
   usb_.write("proc/812/comm", "ModemManager\n");
-  EXPECT_FALSE(about("ModemManager"));  // without a Touch it is in nobody's way
+  EXPECT_FALSE(about("ModemManager"));  // without a Touch it has no effect
   EXPECT_FALSE(about("libncurses"));
   usb_.plug("1-5", "2988", "0302", "T1", 1, 6);
-  EXPECT_NE(finding("ModemManager runs").mend.find("stop ModemManager"), std::string::npos);
+  EXPECT_NE(finding("ModemManager is running").mend.find("stop ModemManager"), std::string::npos);
   EXPECT_NE(finding("libncurses.so.5").mend.find("apt install libncurses5"), std::string::npos);
   usb_.write("usr/lib/x86_64-linux-gnu/libncurses.so.5", "");
   usb_.write("proc/812/comm", "bash\n");
@@ -116,23 +117,24 @@ TEST_F(DoctorTest, SeesWhatKeepsTheVendorsLibraryFromATouch) {
   EXPECT_FALSE(about("libncurses"));
 }
 
-TEST_F(DoctorTest, SeesPowerSavingAndHubs) {
+TEST_F(DoctorTest, FindsPowerSavingAndHubs) {
   plug_woody("1-4.2");
   usb_.write(usb_.device_folder("1-4.2") / "power/control", "auto");
   usb_.plug("1-4", "05e3", "0608", "", 1, 9, "12");
-  EXPECT_NE(finding("to sleep").mend.find("1-4.2/power/control"), std::string::npos);
+  EXPECT_NE(finding("suspend it").mend.find("1-4.2/power/control"), std::string::npos);
   EXPECT_EQ(finding("full-speed hub").health, Health::kAdvice);
   usb_.write(usb_.device_folder("1-4") / "speed", "480");
-  EXPECT_NE(finding("hangs on a hub").mend.find("computer itself"), std::string::npos);
+  EXPECT_NE(finding("connected to a hub").mend.find("directly into the computer"),
+            std::string::npos);
 }
 
-TEST_F(DoctorTest, SeesTheKernelsRealTimeLimits) {
+TEST_F(DoctorTest, FindsTheKernelsRealTimeLimits) {
   plug_woody();
   system_.real_time_priority_max = 0;
   EXPECT_NE(finding("real-time priority").mend.find("rtprio 80"), std::string::npos);
   usb_.write("proc/sys/kernel/sched_rt_runtime_us", "100000");
   EXPECT_NE(finding("100000 us").mend.find("sysctl"), std::string::npos);
-  usb_.write("proc/sys/kernel/sched_rt_runtime_us", "-1");  // no limit at all is fine
+  usb_.write("proc/sys/kernel/sched_rt_runtime_us", "-1");  // no limit is valid
   EXPECT_EQ(troubles(), 1u);
 }
 
@@ -153,7 +155,7 @@ TEST_F(DoctorTest, UnknownBoardGetsItsOwnUdevRule) {
   EXPECT_NE(unknown.what.find("16c0:0486, \"Teensyduino RawHID\""), std::string::npos);
   EXPECT_NE(unknown.mend.find("--device 7654321"), std::string::npos);
   EXPECT_NE(unknown.mend.find("board: teensy_raw_hid_64"), std::string::npos);
-  EXPECT_EQ(unknown.mend.find("udev"), std::string::npos) << "it may be opened already";
+  EXPECT_EQ(unknown.mend.find("udev"), std::string::npos) << "access is already granted";
   std::filesystem::remove(usb_.root() / "dev/hidraw5");
   unknown = finding("board of unknown kind");
   EXPECT_NE(unknown.mend.find("echo 'SUBSYSTEM==\"hidraw\", ATTRS{idVendor}==\"16c0\", "
@@ -164,7 +166,7 @@ TEST_F(DoctorTest, UnknownBoardGetsItsOwnUdevRule) {
   EXPECT_NE(unknown.mend.find("/etc/udev/rules.d/71-"), std::string::npos);
 }
 
-TEST_F(DoctorTest, NamesABoardWithoutANameOfItsOwnByItsSocket) {
+TEST_F(DoctorTest, NamesABoardWithoutSerialByItsSocket) {
   usb_.plug("1-1.4", "1234", "0006", "0123456789", 1, 4);
   usb_.bind("1-1.4", 0, "usbhid");
   usb_.add_hidraw("1-1.4", 0, "hidraw5", 14);
@@ -174,7 +176,7 @@ TEST_F(DoctorTest, NamesABoardWithoutANameOfItsOwnByItsSocket) {
   EXPECT_NE(unknown.mend.find("KERNELS==\"1-1.4\""), std::string::npos);
 }
 
-TEST_F(DoctorTest, SaysThatABoardOfAFormNoArmHasIsNeverOpened) {
+TEST_F(DoctorTest, BoardOfUnknownFormIsNeverOpened) {
   usb_.plug("1-3", "1234", "0006", "X1", 1, 4);
   usb_.bind("1-3", 0, "usbhid");
   usb_.add_hidraw("1-3", 0, "hidraw5", 64);
@@ -189,7 +191,7 @@ TEST_F(DoctorTest, NamesTheProgramThatHasTheArm) {
   EXPECT_EQ(finding("steam (process 77)").health, Health::kProblem);
 }
 
-TEST_F(DoctorTest, KnowsARealTimeKernelByEitherOfItsSigns) {
+TEST_F(DoctorTest, DetectsARealTimeKernelByEitherFile) {
   plug_woody();
   EXPECT_EQ(finding("PREEMPT_RT").health, Health::kGood);
   usb_.write("proc/sys/kernel/version", "#1 SMP PREEMPT_DYNAMIC Debian 6.1");
@@ -199,7 +201,7 @@ TEST_F(DoctorTest, KnowsARealTimeKernelByEitherOfItsSigns) {
   EXPECT_EQ(finding("PREEMPT_RT").health, Health::kGood);
 }
 
-TEST_F(DoctorTest, SeesAGovernorThatSlowsAProcessorDown) {
+TEST_F(DoctorTest, FindsASlowFrequencyGovernor) {
   plug_woody();
   EXPECT_EQ(finding("full speed").health, Health::kGood);
   usb_.write(kCpus + "cpu1/cpufreq/scaling_governor", "powersave");
@@ -210,25 +212,26 @@ TEST_F(DoctorTest, SeesAGovernorThatSlowsAProcessorDown) {
 
 TEST_F(DoctorTest, FindsDeepProcessorSleepStates) {
   plug_woody();
-  EXPECT_EQ(finding("take 200 us to wake; you may ask for less").health, Health::kGood);
-  std::filesystem::remove(usb_.root() / "dev/cpu_dma_latency");  // root may write all that exists
+  EXPECT_EQ(finding("take 200 us to wake up; a run reduces this").health, Health::kGood);
+  std::filesystem::remove(usb_.root() /
+                          "dev/cpu_dma_latency");  // root may write every existing file
   EXPECT_EQ(finding("take 200 us to wake").health, Health::kAdvice);
   EXPECT_EQ(troubles(), 1u);
   usb_.write(kCpus + "cpu0/cpuidle/state1/disable", "1");
-  EXPECT_EQ(troubles(), 1u) << "the other one still sleeps";
+  EXPECT_EQ(troubles(), 1u) << "the sleep state of the other processor is still enabled";
   usb_.write(kCpus + "cpu1/cpuidle/state1/disable", "1");
   EXPECT_EQ(troubles(), 0u);
 }
 
-TEST_F(DoctorTest, PassesOverWhatTheKernelDoesNotTell) {
+TEST_F(DoctorTest, SkipsValuesThatTheKernelDoesNotReport) {
   plug_woody();
   std::filesystem::remove_all(usb_.root() / kCpus);
   std::filesystem::remove(usb_.root() / "proc/sys/kernel/version");
   EXPECT_EQ(troubles(), 0u);
 }
 
-TEST_F(DoctorTest, SaysSoWhenNothingIsPluggedInOrItsProtocolIsSecret) {
-  EXPECT_EQ(finding("No arm that Thimble knows").health, Health::kAdvice);
+TEST_F(DoctorTest, ReportsMissingAndUnsupportedArms) {
+  EXPECT_EQ(finding("No supported arm").health, Health::kAdvice);
   usb_.plug("1-5", "1451", "0402", "FD", 1, 6);
   EXPECT_EQ(finding("not public").health, Health::kAdvice);
   usb_.plug("1-6", "16c0", "0483", "H1", 1, 7);
@@ -236,17 +239,17 @@ TEST_F(DoctorTest, SaysSoWhenNothingIsPluggedInOrItsProtocolIsSecret) {
   EXPECT_NE(finding("Haply Inverse3").what.find("not public"), std::string::npos);
 }
 
-TEST(DoctorLog, SaysWhereTheLogIsAndWhetherItCanBeWritten) {
+TEST(DoctorLog, ReportsLocationAndWriteAccess) {
   const auto folder = support::scratch_folder() / "doctor_log";
   std::filesystem::create_directories(folder);
   const Finding good = examine_log(folder / "to" / "be" / "made.log");
   EXPECT_EQ(good.health, Health::kGood);
-  EXPECT_EQ(good.what, "What happens is logged to " + (folder / "to/be/made.log").string() + ".");
+  EXPECT_EQ(good.what, "Events are logged to " + (folder / "to/be/made.log").string() + ".");
   EXPECT_FALSE(std::filesystem::exists(folder / "to"));
-  const Finding bad = examine_log("/proc/self/log/a.log");  // where nobody makes a folder
+  const Finding bad = examine_log("/proc/self/log/a.log");  // no folder can be created there
   if (geteuid() != 0) {
     EXPECT_EQ(bad.health, Health::kAdvice);
-    EXPECT_EQ(bad.what, "What happens cannot be logged to /proc/self/log/a.log.");
+    EXPECT_EQ(bad.what, "Events cannot be logged to /proc/self/log/a.log.");
   }
 }
 

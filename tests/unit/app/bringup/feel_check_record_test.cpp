@@ -1,4 +1,5 @@
-// How much force a real arm gets before and after its feel-check, and how long that record holds.
+// Force limit of a real arm before and after its feel check, and validity of the record of that
+// check.
 #include "arm_policy/feel_check_record.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +53,7 @@ TEST_F(RealArmTermsTest, UncheckedArmStaysBelowHalfANewton) {
   EXPECT_EQ(scene::terms_for(arm, {})->feel_check, scene::FeelCheckState::kNone);
 }
 
-/// Asks whether an arm that passed counts as passed after something was done.
+/// Checks whether a passed feel check is still valid after a change.
 class FeelCheckRecordTest : public RealArmTermsTest {
  protected:
   FeelCheckRecordTest() {
@@ -73,12 +74,12 @@ class FeelCheckRecordTest : public RealArmTermsTest {
   const fs::path record_ = scene::feel_check_file("W1");
 };
 
-TEST_F(FeelCheckRecordTest, HoldsAsLongAsNothingChanges) {
+TEST_F(FeelCheckRecordTest, IsValidUntilSomethingChanges) {
   EXPECT_TRUE(passed(arm_));
   EXPECT_TRUE(passed(plug(ArmKind::kWoody, "W1")));
 }
 
-TEST_F(FeelCheckRecordTest, CountsAsNoneOnceAnythingChanges) {
+TEST_F(FeelCheckRecordTest, IsInvalidAfterAnyChange) {
   const std::string record = text_of(record_), file = text_of(kArms / "woodenhaptics.yaml");
   const fs::path installed = scene::own_arm_folder() / "woodenhaptics.yaml";
   const auto change = [&](const std::string& piece, const std::string& by) {
@@ -98,20 +99,21 @@ TEST_F(FeelCheckRecordTest, CountsAsNoneOnceAnythingChanges) {
   } cases[] = {
       {"a limit of the arm file", change("force_max: 5 ", "force_max: 4 ")},
       {"a constant of the arm file", change("length_b: 0.205", "length_b: 0.206")},
-      {"a word of the arm file", change("name: woodenhaptics", "name: mine")},
+      {"the name in the arm file", change("name: woodenhaptics", "name: mine")},
       {"a motor's sign", calibrate(motor)},
       {"an encoder's sign", calibrate(encoder)},
       {"the home pose", calibrate(home)},
       {"no calibration", [] { fs::remove(scene::calibration_file("W1")); }},
       {"the firmware's number", [&] { plugged.release = 0x0101; }},
       {"the board's own name", [&] { plugged.product = "another"; }},
-      {"a firmware that tells nothing", [&] { plugged.release = 0; }},
+      {"a firmware without a number", [&] { plugged.release = 0; }},
       {"a record that was cut off", [&] { write(record_, record.substr(0, record.size() / 2)); }},
       {"an empty record", [this] { write(record_, ""); }},
       {"a record with a byte more", [&] { write(record_, record + ' '); }},
       {"a record of another arm", [&] { write(record_, with(record, "arm: W1", "arm: W2")); }},
-      {"a record that anybody may write", [this] { EXPECT_EQ(chmod(record_.c_str(), 0666), 0); }},
-      {"a folder in its place",
+      {"a record with write access for all users",
+       [this] { EXPECT_EQ(chmod(record_.c_str(), 0666), 0); }},
+      {"a folder instead of the record",
        [this] {
          fs::remove(record_);
          fs::create_directories(record_);
@@ -121,7 +123,7 @@ TEST_F(FeelCheckRecordTest, CountsAsNoneOnceAnythingChanges) {
     ASSERT_TRUE(passed(plugged)) << "before " << one.what;
     one.act();
     EXPECT_FALSE(passed(plugged)) << one.what;
-    // Back to what it was.
+    // The original state again.
     plugged = arm_;
     fs::remove_all(record_);
     write(record_, record);
@@ -132,7 +134,7 @@ TEST_F(FeelCheckRecordTest, CountsAsNoneOnceAnythingChanges) {
   EXPECT_FALSE(passed(plug(ArmKind::kWoody, "W3"))) << "another arm of the kind";
 }
 
-TEST_F(FeelCheckRecordTest, OfAFalconHoldsForTheImageThatIsNamed) {
+TEST_F(FeelCheckRecordTest, FalconRecordIsValidForItsFirmwareImage) {
   const FoundArm falcon = plug(ArmKind::kFalcon, "F1");
   const fs::path image = home_ / "image", other = home_ / "other";
   write(image, "one");

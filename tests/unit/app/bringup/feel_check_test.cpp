@@ -18,11 +18,11 @@ scene::ArmFile shipped(const std::string& name) {
   return std::move(file).value();
 }
 
-/// What a feel check found, and how hard it pushed.
+/// Results of a feel check, and its largest force.
 struct Checked {
   std::vector<CheckResult> results;
-  double force_max = 0;  // N, true at the tip
-  int asked = 0;         // questions
+  double force_max = 0;  // N, true force at the tip
+  int asked = 0;         // number of questions
 
   bool passed() const {
     return results.size() == kFeelChecks &&
@@ -36,7 +36,8 @@ struct Checked {
   }
 };
 
-/// Checks the simulated arm of a file by a hand that does what is asked, and answers what is true.
+/// Runs the feel check of a file's simulated arm, with a hand that follows the prompts and answers
+/// correctly.
 Checked check(const scene::ArmFile& file, bool answers = true) {
   Checked found;
   auto bench =
@@ -56,7 +57,7 @@ Checked check(const scene::ArmFile& file, bool answers = true) {
   return found;
 }
 
-/// Board of a shipped arm file, and how long it waits without a message, s.
+/// Board of a shipped arm file, and the time of its watchdog, s.
 struct Board {
   const char* file;
   double watchdog;
@@ -75,7 +76,7 @@ TEST_P(FeelCheckOfAShippedFile, PassesItsOwnBoard) {
   EXPECT_LE(found.force_max, scene::kFeelCheckForceMax);
 }
 
-TEST_P(FeelCheckOfAShippedFile, SeesABoardWithoutWatchdog) {
+TEST_P(FeelCheckOfAShippedFile, DetectsABoardWithoutWatchdog) {
   scene::ArmFile file = shipped(GetParam().file);
   file.simulated.firmware.watchdog_ns = INT64_MAX / 4;
   const Checked found = check(file);
@@ -85,7 +86,8 @@ TEST_P(FeelCheckOfAShippedFile, SeesABoardWithoutWatchdog) {
 }
 
 // mbed boards 0.5 s [S woody-experimental main.cpp, haptikfabrikenapi firmware/main.cpp], boards
-// with text lines 0.1 s [S woodenhaptics firmware]; of the Falcon the guess of its simulation.
+// with text lines 0.1 s [S woodenhaptics firmware]; for the Falcon the assumption of its
+// simulation.
 INSTANTIATE_TEST_SUITE_P(Boards, FeelCheckOfAShippedFile,
                          testing::Values(Board{"woodenhaptics", 0.5}, Board{"polhem", 0.5},
                                          Board{"woodenhaptics_teensy", 0.1},
@@ -96,7 +98,7 @@ TEST(FeelCheck, ReadsAnArmThatOnlyAnswersAfterTheSilence) {
   const Checked found = check(shipped("falcon"), false);
   ASSERT_EQ(found.results.size(), kFeelChecks);
   EXPECT_TRUE(found.results.back().passed);
-  EXPECT_NE(found.results.back().text.find("had let go"), std::string::npos) << found.text();
+  EXPECT_NE(found.results.back().text.find("motors were off"), std::string::npos) << found.text();
 }
 
 /// A shipped arm with dry friction at the tip, N per axis.
@@ -116,8 +118,8 @@ TEST(FeelCheck, PassesArmsOfHighDryFriction) {
   }
 }
 
-// 0.49 N less 0.35 N of friction move a tip in a hand by a few steps of the encoders.
-TEST(FeelCheck, NamesFrictionThatLeavesLittleOfItsStrongestPush) {
+// 0.49 N minus 0.35 N of friction moves a tip in a hand by a few encoder steps.
+TEST(FeelCheck, ReportsFrictionNearItsStrongestPush) {
   for (const char* name : {"vintage_phantom", "woodenhaptics", "polhem", "falcon"}) {
     const Checked found = check(rubbing(name, 0.35));
     EXPECT_TRUE(found.passed() || found.text().find("dry friction") != std::string::npos)
@@ -127,20 +129,21 @@ TEST(FeelCheck, NamesFrictionThatLeavesLittleOfItsStrongestPush) {
   }
 }
 
-TEST(FeelCheck, SaysFrictionWhereNothingMoves) {
+TEST(FeelCheck, ReportsFrictionIfNothingMoves) {
   const Checked found = check(rubbing("vintage_phantom", 0.7));
   EXPECT_FALSE(found.passed());
   EXPECT_NE(found.text().find("dry friction"), std::string::npos) << found.text();
   EXPECT_EQ(found.text().find("does not pull"), std::string::npos) << found.text();
 }
 
-TEST(FeelCheck, AsksWhereFrictionHidesTheWatchdog) {
+TEST(FeelCheck, AsksIfFrictionHidesTheWatchdog) {
   const Checked found = check(rubbing("vintage_phantom", 0.35));
   EXPECT_EQ(found.asked, 1);
-  EXPECT_NE(found.results.back().text.find("You felt"), std::string::npos) << found.text();
+  EXPECT_NE(found.results.back().text.find("You answered that the arm stopped"), std::string::npos)
+      << found.text();
 }
 
-TEST(FeelCheck, FailsWhereNobodyAnswers) {
+TEST(FeelCheck, FailsWithoutAnAnswer) {
   const Checked found = check(rubbing("vintage_phantom", 0.35), false);
   ASSERT_EQ(found.results.size(), kFeelChecks);
   EXPECT_FALSE(found.results.back().passed) << found.text();
@@ -154,7 +157,7 @@ TEST(FeelCheck, NamesADeadMotorBehindHighFriction) {
   EXPECT_NE(found.text().find("Motor 2 does not pull"), std::string::npos) << found.text();
 }
 
-TEST(FeelCheck, SeesAMissingWatchdogBehindHighFriction) {
+TEST(FeelCheck, DetectsAMissingWatchdogBehindHighFriction) {
   scene::ArmFile file = rubbing("woodenhaptics", 0.3);
   file.simulated.firmware.watchdog_ns = INT64_MAX / 4;
   const Checked found = check(file);

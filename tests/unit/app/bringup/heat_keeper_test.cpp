@@ -25,35 +25,35 @@ class HeatKeeperTest : public ::testing::Test {
   HeatKeeperTest() { setenv("XDG_STATE_HOME", (support::scratch_folder() / "state").c_str(), 1); }
 };
 
-TEST_F(HeatKeeperTest, TakesAnArmThatNeverRanForCold) {
+TEST_F(HeatKeeperTest, NewArmIsCold) {
   const scene::KnownHeat known = scene::load_heat("never", kSettings, kNow);
   EXPECT_EQ(known.heat, (std::array<double, 3>{}));
   EXPECT_EQ(known.note, "");
 }
 
-TEST_F(HeatKeeperTest, CoolsByTheTimeThatHasPassed) {
+TEST_F(HeatKeeperTest, CoolsWithElapsedTime) {
   ASSERT_TRUE(scene::save_heat("arm/1", kHeat, kNow, false));
   const scene::KnownHeat known = scene::load_heat("arm/1", kSettings, kNow + 45);
   EXPECT_EQ(known.note, "");
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(known.heat[i], kHeat[i] * std::exp(-45 / kSettings.time_constant[i]), 1e-9);
   }
-  EXPECT_EQ(scene::load_heat("arm_2", kSettings, kNow).heat[0], 0) << "each arm has its own";
+  EXPECT_EQ(scene::load_heat("arm_2", kSettings, kNow).heat[0], 0) << "each arm has its own file";
 }
 
-TEST_F(HeatKeeperTest, CountsAClockThatWentBackAsNoTime) {
+TEST_F(HeatKeeperTest, ClockThatStepsBackCoolsNothing) {
   ASSERT_TRUE(scene::save_heat("arm", kHeat, kNow, false));
   EXPECT_EQ(scene::load_heat("arm", kSettings, kNow - 86400).heat, kHeat);
 }
 
-TEST_F(HeatKeeperTest, TakesARunThatDidNotEndForHotAndSaysSo) {
+TEST_F(HeatKeeperTest, UnfinishedRunIsTreatedAsHot) {
   ASSERT_TRUE(scene::save_heat("arm", kHeat, kNow, true));
   const scene::KnownHeat known = scene::load_heat("arm", kSettings, kNow + 5);
   EXPECT_EQ(known.heat, kHot);
   EXPECT_NE(known.note.find("did not end properly"), std::string::npos);
 }
 
-TEST_F(HeatKeeperTest, PipeIsTakenForHot) {
+TEST_F(HeatKeeperTest, PipeIsTreatedAsHot) {
   ASSERT_TRUE(scene::save_heat("arm", kHeat, kNow, false));
   std::filesystem::remove(scene::heat_file("arm"));
   ASSERT_EQ(mkfifo(scene::heat_file("arm").c_str(), 0600), 0);
@@ -71,7 +71,7 @@ TEST_F(HeatKeeperTest, PipeBesideFileIsReplaced) {
   EXPECT_EQ(scene::load_heat("arm", kSettings, kNow).heat, kHeat);
 }
 
-TEST_F(HeatKeeperTest, TakesADamagedFileForHotAndSaysSo) {
+TEST_F(HeatKeeperTest, CorruptFileIsTreatedAsHot) {
   for (const char* text : {"", "heat: [0, 0, 0]\n", "heat: [0, 0]\ntime: 1\nrunning: \"no\"\n",
                            "heat: [.nan, 0, 0]\ntime: 1\nrunning: \"no\"\n",
                            "heat: [-1, 0, 0]\ntime: 1\nrunning: \"no\"\n", "\x01\x02{[",

@@ -22,7 +22,7 @@ using driver::FoundArm;
 using support::HaplyGreeting;
 using support::MockHaplyService;
 
-/// This computer, with a service of Haply's.
+/// A computer that runs Haply's service.
 class LinkedArmTest : public RealArmTermsTest {
  protected:
   ~LinkedArmTest() override { unsetenv("THIMBLE_HAPLY_PORT"); }
@@ -32,7 +32,7 @@ class LinkedArmTest : public RealArmTermsTest {
     setenv("THIMBLE_HAPLY_PORT", std::to_string(service_->port()).c_str(), 1);
   }
 
-  /// Returns the arms behind services that are found here.
+  /// Returns the arms that are found behind services.
   static std::vector<FoundArm> linked() {
     auto arms = driver::find_arms();
     std::vector<FoundArm> found;
@@ -52,7 +52,7 @@ TEST_F(LinkedArmTest, IsFoundChosenAndOpenedWithItsOwnFile) {
   const FoundArm& arm = arms.front();
   EXPECT_EQ(arm.name(), "049D");
   EXPECT_EQ(arm.certainty, Certainty::kProvesItself);
-  EXPECT_EQ(service_->log().messages, 0) << "who looks says nothing";
+  EXPECT_EQ(service_->log().messages, 0) << "a search sends no messages";
   const auto chosen = scene::choose_arm(arms, "auto");
   ASSERT_TRUE(chosen && *chosen) << chosen.error().message;
 
@@ -86,7 +86,7 @@ TEST_F(LinkedArmTest, TwoArmsMakeAutoAskWhich) {
   EXPECT_EQ((*scene::choose_arm(arms, "049D"))->board, BoardKind::kHaplyService);
 }
 
-TEST_F(LinkedArmTest, TakesNoFileOfAnotherArm) {
+TEST_F(LinkedArmTest, RefusesFilesOfOtherArms) {
   serve();
   const FoundArm arm = linked().at(0);
   const auto falcon = scene::load_arm(kArms / "falcon.yaml");
@@ -111,7 +111,7 @@ TEST_F(LinkedArmTest, KeepsAPassedFeelCheckOnlyForTheSameVersions) {
   EXPECT_FALSE(scene::keep_passed(scene::describe_checked(arm, terms->arm, {})));
 }
 
-TEST_F(LinkedArmTest, TheDoctorSaysWhatServesItOrWhatIsMissing) {
+TEST_F(LinkedArmTest, DoctorReportsServiceOrMissingParts) {
   const auto said = [](const std::string& words) {
     for (const Finding& found : examine(this_machine())) {
       if (holds(found.what, words)) return found;

@@ -18,7 +18,7 @@ TEST(LateTicks, AreManyAboveOneInAThousand) {
   EXPECT_EQ(ticks.worst, 0.003);
 }
 
-TEST(LoopPriority, GivesTheFormerPriorityBack) {
+TEST(LoopPriority, RestoresTheFormerPriority) {
   int before = 0, after = 0;
   sched_param parameters{};
   ASSERT_EQ(pthread_getschedparam(pthread_self(), &before, &parameters), 0);

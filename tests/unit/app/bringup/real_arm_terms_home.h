@@ -31,7 +31,7 @@ inline void write(const fs::path& file, const std::string& text) {
   std::ofstream(file) << text;
 }
 
-/// Replaces one piece of a text, which must be there.
+/// Replaces a part of a text; the test fails if the text does not contain it.
 inline std::string with(std::string text, const std::string& piece, const std::string& by) {
   const std::size_t at = text.find(piece);
   EXPECT_NE(at, std::string::npos) << piece;
@@ -54,7 +54,7 @@ inline std::string ball(const std::string& arm, const std::string& gate) {
          "hand:\n  path:\n    - {t: 0, at: [0, 0, 0.05]}\n    - {t: 1, at: [0, 0, 0.05]}\n";
 }
 
-/// A home of its own for each test, in which arms are plugged in.
+/// A separate home folder for each test, with simulated USB arms.
 class RealArmTermsTest : public ::testing::Test {
  protected:
   RealArmTermsTest() {
@@ -64,7 +64,7 @@ class RealArmTermsTest : public ::testing::Test {
     setenv("XDG_STATE_HOME", (home_ / "state").c_str(), 1);
   }
 
-  /// Plugs an arm in, as far as a folder of the kernel goes.
+  /// Creates the kernel's files of a plugged-in arm.
   driver::FoundArm plug(driver::ArmKind kind, const std::string& name,
                         std::uint16_t release = 0x0100,
                         const std::string& product = "an arm") const {
@@ -85,14 +85,14 @@ class RealArmTermsTest : public ::testing::Test {
     return arm;
   }
 
-  /// Writes a copy of a shipped arm file elsewhere, with one piece replaced.
+  /// Writes a copy of a shipped arm file to another folder, with one part replaced.
   fs::path copy_of(const std::string& name, const std::string& piece, const std::string& by) const {
     const fs::path file = home_ / "elsewhere" / (name + ".yaml");
     write(file, with(text_of(kArms / (name + ".yaml")), piece, by));
     return file;
   }
 
-  /// Returns the file that an arm gets when its board answers as `model`, or the error.
+  /// Returns the file for an arm whose board answers as `model`, or the error.
   static std::string file_for(const driver::FoundArm& arm, int model = 0) {
     const auto found = scene::find_real_arm_file(
         arm,

@@ -1,4 +1,4 @@
-// Which arm file a real arm has, and that nobody loosens its limits.
+// Selection of the arm file of a real arm; no other file can loosen its limits.
 #include "thimble/scene/real_arm_terms.h"
 
 #include <gtest/gtest.h>
@@ -60,9 +60,9 @@ TEST_F(RealArmTermsTest, NamedFileOverridesTheCalibration) {
   ASSERT_TRUE(kept) << kept.error().message;
   EXPECT_EQ(kept->path.stem(), "polhem");
   EXPECT_TRUE(holds(kept->why, "P1.yaml")) << kept->why;
-  EXPECT_EQ(kept->file.model.encoders[1].home_counts, 0) << "its calibration is in it";
+  EXPECT_EQ(kept->file.model.encoders[1].home_counts, 0) << "the calibration is included";
 
-  // The signs of one arm in another arm's file would drive the motors the wrong way.
+  // The signs of one arm in the file of another would drive the motors in the wrong direction.
   const scene::RealArmSearch vintage{.arm_file = kArms / "vintage_phantom.yaml"};
   const auto other = scene::find_real_arm_file(arm, vintage);
   ASSERT_FALSE(other);
@@ -79,7 +79,7 @@ TEST_F(RealArmTermsTest, NamedFileOverridesTheCalibration) {
   EXPECT_TRUE(holds(file_for(arm), "No installed arm file is called gone"));
 }
 
-TEST_F(RealArmTermsTest, AFileOfAnotherWireIsRefused) {
+TEST_F(RealArmTermsTest, FileForAnotherWireIsRefused) {
   const auto found =
       scene::find_real_arm_file(plug(ArmKind::kWoody, "W1"), {.arm_file = kArms / "falcon.yaml"});
   ASSERT_FALSE(found);
@@ -146,21 +146,21 @@ TEST_F(RealArmTermsTest, ForeignFileOnlyTightensLimits) {
   }
 }
 
-TEST_F(RealArmTermsTest, AFileFromElsewhereMaySayNothingElseOfTheArm) {
+TEST_F(RealArmTermsTest, ForeignFileCannotChangeTheArm) {
   const FoundArm arm = plug(ArmKind::kWoody, "W1");
   struct Case {
     const char *was, *by, *section;
   };
   const Case cases[] = {
       {"length_b: 0.205", "length_b: 0.105", "geometry"},
-      // Half the torque constant would be twice the force.
+      // Half of the torque constant would double the force.
       {"torque_constant: [0.0259", "torque_constant: [0.013", "joints"},
       {"current_max: [3, 3, 3]", "current_max: [30, 30, 30]", "joints"},
       {"ratio: [16", "ratio: [8", "joints"},
       {"encoder_sign: [-1", "encoder_sign: [1", "joints"},
       {"position: [-0.220", "position: [-0.120", "base"},
       {"min: [-0.1", "min: [-0.5", "workspace"},
-      // With it a force_max of 50 N would be within what is declared.
+      // With it a force_max of 50 N would be within the declared force.
       {"  force: 5 ", "  force: 50 ", "declared"},
       {"velocity_corner_frequency: 100", "velocity_corner_frequency: 0",
        "velocity_corner_frequency"},
@@ -175,7 +175,7 @@ TEST_F(RealArmTermsTest, AFileFromElsewhereMaySayNothingElseOfTheArm) {
   }
 }
 
-TEST_F(RealArmTermsTest, AnArmOfOnesOwnIsInstalledOnce) {
+TEST_F(RealArmTermsTest, CustomArmIsInstalledOnce) {
   const FoundArm arm = plug(ArmKind::kPolhem, "P1");
   const fs::path file = copy_of("polhem", "name: polhem", "name: my_arm");
   const auto before = scene::find_real_arm_file(arm, {.arm_file = file});
@@ -189,7 +189,7 @@ TEST_F(RealArmTermsTest, AnArmOfOnesOwnIsInstalledOnce) {
   ASSERT_TRUE(after) << after.error().message;
   EXPECT_EQ(after->file.limits.force_max, 3);
   EXPECT_TRUE(after->told.empty());
-  EXPECT_EQ(scene::find_arm_file("mine")->string(), mine.string()) << "it is known by name";
+  EXPECT_EQ(scene::find_arm_file("mine")->string(), mine.string()) << "the arm is found by name";
 }
 
 TEST_F(RealArmTermsTest, UserFileReplacesTheShippedOne) {
@@ -197,7 +197,7 @@ TEST_F(RealArmTermsTest, UserFileReplacesTheShippedOne) {
   write(scene::own_arm_folder() / "woodenhaptics.yaml",
         with(text_of(kArms / "woodenhaptics.yaml"), "force_max: 5 ", "force_max: 2 "));
   EXPECT_EQ(scene::find_real_arm_file(arm)->file.limits.force_max, 2);
-  // The one that came with the program counts as a file from elsewhere then, and loosens nothing.
+  // The shipped file then counts as a foreign file and cannot loosen limits.
   const auto named = scene::find_real_arm_file(arm, {.arm_file = kArms / "woodenhaptics.yaml"});
   ASSERT_TRUE(named) << named.error().message;
   EXPECT_EQ(named->file.limits.force_max, 2);
@@ -214,7 +214,7 @@ TEST_F(RealArmTermsTest, ShippedScenesKeepTheArmAndItsLimits) {
   for (const auto& entry : fs::directory_iterator(kSource / "app/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
     auto scene = scene::load_scene(entry.path(), {.arm = terms->arm.path});
-    if (!scene) continue;  // its scanned mesh is not here
+    if (!scene) continue;  // its scanned mesh is not installed
     ++scenes;
     const auto told = scene::put_on_terms(*scene, entry.path(), *terms);
     ASSERT_TRUE(told) << told.error().message;
@@ -257,13 +257,13 @@ TEST_F(RealArmTermsTest, SceneCannotRemoveTheEnergyStage) {
     EXPECT_EQ(holds(text, "ball.yaml:5: "), one.said[0] != 0) << text;
     EXPECT_TRUE(holds(text, "its arm, vintage_phantom, is what it is simulated with")) << text;
   }
-  // In simulation a scene may still do without.
+  // In simulation a scene may still omit the energy stage.
   auto simulated = scene::load_scene(file);
   ASSERT_TRUE(simulated);
   EXPECT_EQ(simulated->energy, EnergyStage::kBounding);
 }
 
-TEST_F(RealArmTermsTest, AScenesOwnArmFileTightensOnly) {
+TEST_F(RealArmTermsTest, SceneArmFileOnlyTightensLimits) {
   const fs::path folder = home_ / "scene", file = folder / "ball.yaml";
   std::string own = text_of(kArms / "vintage_phantom.yaml");
   own = with(own, "  force: 5 ", "  force: 100 ");
@@ -293,12 +293,12 @@ TEST_F(RealArmTermsTest, AScenesOwnArmFileTightensOnly) {
   EXPECT_TRUE(holds(text, "own.yaml:49: soft_start 0.05 s is ignored")) << text;
   EXPECT_TRUE(holds(text, "own.yaml:51: watchdog 1 s is ignored")) << text;
   EXPECT_TRUE(holds(text, "own.yaml:52: energy: none is ignored")) << text;
-  // A file that is wrong is no reason to go on.
+  // An invalid file is an error.
   write(folder / "own.yaml", with(own, "force_max: 100", "force_max: much"));
   EXPECT_FALSE(scene::put_on_terms(*scene, file, *terms));
 }
 
-TEST_F(RealArmTermsTest, ARunWithARealArmNeedsTerms) {
+TEST_F(RealArmTermsTest, RealArmRunNeedsTerms) {
   const fs::path file = home_ / "scene" / "ball.yaml";
   write(file, ball((kArms / "vintage_phantom.yaml").string(), ""));
   session::SessionOptions options;
@@ -308,7 +308,7 @@ TEST_F(RealArmTermsTest, ARunWithARealArmNeedsTerms) {
   EXPECT_TRUE(holds(session.error().message, "terms")) << session.error().message;
 }
 
-TEST_F(RealArmTermsTest, ABoardWithAnArmsNameIsAskedForItsModel) {
+TEST_F(RealArmTermsTest, KnownLineBoardIsAskedForItsModel) {
   const support::LineBoard board(2);
   if (board.node().empty()) GTEST_SKIP() << "this machine has no pseudo-terminals";
   FoundArm arm = plug(ArmKind::kHfabLine, "V1", 0x0279, "Haptikfabriken vintage");
@@ -321,7 +321,7 @@ TEST_F(RealArmTermsTest, ABoardWithAnArmsNameIsAskedForItsModel) {
   EXPECT_GT(board.messages(), 0);
 }
 
-TEST_F(RealArmTermsTest, TheGateOfASessionStandsOnTheTerms) {
+TEST_F(RealArmTermsTest, SessionGateFollowsTheTerms) {
   const support::LineBoard board(2);
   if (board.node().empty()) GTEST_SKIP() << "this machine has no pseudo-terminals";
   FoundArm arm = plug(ArmKind::kHfabLine, "V1", 0x0279, "Haptikfabriken vintage");

@@ -1,4 +1,4 @@
-// The lock against sleep, by a program that stands in for systemd-inhibit.
+// The lock against sleep, with a program that replaces systemd-inhibit.
 #include "sleep_lock.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace thimble::scene {
 namespace {
 
-/// Puts a folder with a program of this text in front of all others.
+/// Puts a folder with a program of this text first in the search path.
 class SleepLockTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -45,8 +45,8 @@ class SleepLockTest : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(SleepLockTest, IsHeldForAsLongAsItLives) {
-  // As the real one does: options away, the program run, an end when that ends.
+TEST_F(SleepLockTest, IsHeldDuringItsLifetime) {
+  // Like the real program: skips the options, runs the command, and ends with it.
   stand_in("echo \"$*\" >" + (folder_ / "asked").string() +
            "\nwhile [ \"${1#--}\" != \"$1\" ]; do shift; done\n\"$@\"\necho over >" +
            (folder_ / "over").string() + "\n");
@@ -61,21 +61,21 @@ TEST_F(SleepLockTest, IsHeldForAsLongAsItLives) {
   EXPECT_EQ(written("over"), "over\n");
 }
 
-TEST_F(SleepLockTest, SaysSoWhereItIsRefused) {
+TEST_F(SleepLockTest, ReportsARefusal) {
   stand_in("echo 'Failed to inhibit: Access denied' >&2\nexit 1\n");
   const SleepLock lock;
   EXPECT_FALSE(lock.held());
   EXPECT_NE(lock.note().find("logind gave no lock"), std::string::npos);
 }
 
-TEST_F(SleepLockTest, SaysSoWhereItIsNotInstalled) {
+TEST_F(SleepLockTest, ReportsAMissingProgram) {
   setenv("PATH", folder_.c_str(), 1);
   const SleepLock lock;
   EXPECT_FALSE(lock.held());
   EXPECT_NE(lock.note().find("not installed"), std::string::npos);
 }
 
-TEST_F(SleepLockTest, DoesNotWaitForOneThatHangs) {
+TEST_F(SleepLockTest, DoesNotWaitForAHangingProgram) {
   stand_in("exec sleep 60\n");
   const auto begin = std::chrono::steady_clock::now();
   { const SleepLock lock; }

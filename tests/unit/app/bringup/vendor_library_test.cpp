@@ -21,14 +21,14 @@ using driver::BoardKind;
 using driver::Certainty;
 using driver::FoundArm;
 
-/// Names the libraries before anybody looks for them: they are looked for once.
+/// Sets the paths of the libraries before the first search, because there is only one search.
 const bool kNamed = [] {
   setenv("THIMBLE_DHD_LIBRARY", THIMBLE_MOCK_DHD, 1);
   setenv("THIMBLE_HD_LIBRARY", THIMBLE_MOCK_HD, 1);
   return true;
 }();
 
-/// Arms on USB whose makers' libraries are on this computer.
+/// Arms on USB whose vendors' libraries are installed.
 class VendorLibraryTest : public RealArmTermsTest {
  protected:
   VendorLibraryTest()
@@ -46,7 +46,7 @@ class VendorLibraryTest : public RealArmTermsTest {
     return arms && arms->size() == 1 ? arms->front() : FoundArm{};
   }
 
-  /// Opens an arm as a run does, and returns what became of it.
+  /// Opens an arm as a run does; returns the device or the error.
   driver::Result<std::unique_ptr<driver::Device>> open(const FoundArm& arm,
                                                        const std::string& file) {
     auto found = scene::find_real_arm_file(arm, {.arm_file = kArms / (file + ".yaml")});
@@ -61,7 +61,7 @@ class VendorLibraryTest : public RealArmTermsTest {
   driver::WallClock clock_{0};
 };
 
-TEST_F(VendorLibraryTest, MakesAnArmOfABoardOfForceDimensions) {
+TEST_F(VendorLibraryTest, OpensAForceDimensionArm) {
   ASSERT_TRUE(kNamed);
   usb_.plug("1-1", "1451", "0402", "FD1", 1, 2);
   const FoundArm arm = only();
@@ -69,7 +69,7 @@ TEST_F(VendorLibraryTest, MakesAnArmOfABoardOfForceDimensions) {
   EXPECT_EQ(arm.board, BoardKind::kDhdLibrary);
   EXPECT_EQ(arm.certainty, Certainty::kKnown);
   EXPECT_EQ(arm.software, "libdrd 3.17.5");
-  // The library drives several arms, so the user says which.
+  // The library drives several arms, so the user must name one.
   const auto unnamed = scene::find_real_arm_file(arm);
   ASSERT_FALSE(unnamed);
   EXPECT_TRUE(holds(unnamed.error().message, "--arm NAME (installed are: omega3)"))
@@ -86,7 +86,7 @@ TEST_F(VendorLibraryTest, MakesAnArmOfABoardOfForceDimensions) {
   EXPECT_FALSE(open(arm, "touch")) << "another library's file";
 }
 
-TEST_F(VendorLibraryTest, MakesAnArmOfATouch) {
+TEST_F(VendorLibraryTest, OpensATouch) {
   usb_.plug("1-1", "2988", "0302", "TT1", 1, 2);
   usb_.add_tty("1-1", 0, "ttyACM0");
   const FoundArm arm = only();
@@ -110,7 +110,7 @@ TEST_F(VendorLibraryTest, TheDoctorNamesTheLibrary) {
   system.root = usb_.root();
   bool said = false;
   for (const Finding& found : examine(system)) {
-    said = said || (holds(found.what, "FD1: its vendor's library is here (libdrd 3.17.5)") &&
+    said = said || (holds(found.what, "FD1: its vendor's library is installed (libdrd 3.17.5)") &&
                     found.health == Health::kGood);
   }
   EXPECT_TRUE(said);
@@ -121,7 +121,7 @@ TEST_F(VendorLibraryTest, DoctorExplainsVendorLibraryAccess) {
   usb_.plug("1-2", "2988", "0302", "TT1", 1, 3);
   usb_.add_tty("1-2", 0, "ttyACM0");
   usb_.plug("1-3", "2988", "0304", "TX1", 1, 4);
-  // Whoever is root may open all that is there.
+  // root has access to every existing file.
   std::filesystem::remove(usb_.root() / "dev/bus/usb/001/002");
   std::filesystem::remove(usb_.root() / "dev/ttyACM0");
   SystemInfo system;
@@ -130,17 +130,17 @@ TEST_F(VendorLibraryTest, DoctorExplainsVendorLibraryAccess) {
     for (const Finding& found : examine(system)) {
       if (holds(found.what, words)) return found.mend;
     }
-    return std::string("nobody says: " + words);
+    return std::string("no finding contains: " + words);
   };
-  // Nobody has published what the vendors' set-ups do, and our own rule is not for their arms.
-  const std::string touch = mend("TT1: you may not open /dev/ttyACM0");
-  EXPECT_TRUE(holds(touch, "is not published")) << touch;
+  // The vendors' set-up steps are not published, and our rule does not cover their arms.
+  const std::string touch = mend("TT1: you have no access to /dev/ttyACM0");
+  EXPECT_TRUE(holds(touch, "are not published")) << touch;
   EXPECT_TRUE(holds(touch, R"(SUBSYSTEM=="tty", ATTRS{idVendor}=="2988", TAG+="uaccess")"))
       << touch;
   EXPECT_TRUE(holds(touch, "ID_MM_DEVICE_IGNORE")) << touch;
-  const std::string omega = mend("FD1: you may not open /dev/bus/usb/001/002");
+  const std::string omega = mend("FD1: you have no access to /dev/bus/usb/001/002");
   EXPECT_TRUE(holds(omega, R"(ENV{DEVTYPE}=="usb_device", ATTR{idVendor}=="1451")")) << omega;
-  EXPECT_TRUE(holds(mend("TX1: no kernel driver has it"), "usbhid"));
+  EXPECT_TRUE(holds(mend("TX1: no kernel driver is bound to it"), "usbhid"));
   for (const Finding& found : examine(system)) {
     EXPECT_FALSE(holds(found.what, "T1: ") && holds(found.mend, "70-thimble")) << found.mend;
   }

@@ -70,7 +70,7 @@ GapFit search_play(const ArmMotion& motion, const Gap::Vector& start, const GapF
   }
   // In encoder steps: less than one is not visible, and far more than 15 is not a cable.
   constexpr double kWidths[] = {2, 5, 13};
-  constexpr double kStiffer = 2;  // than with the backlash in it
+  constexpr double kStiffer = 2;  // stiffness of a cable relative to a fit without backlash
   const GapPieces few(motion, 24, kShort);
   GapFit best;
   for (const double width : kWidths) {
@@ -80,7 +80,7 @@ GapFit search_play(const ArmMotion& motion, const Gap::Vector& start, const GapF
     keep_better(best, fit_gap(few, from, sought, 5));
   }
   best = fit_gap(pieces, best.theta, sought, 25);
-  // If one joint is in another local minimum: its other values are tried.
+  // One joint may be in another local minimum, so its other start values are tried.
   for (int sweep = 0; sweep < 2; ++sweep) {
     for (int joint = 0; joint < 3; ++joint) {
       for (const double wider : {0.4, 2.5}) {

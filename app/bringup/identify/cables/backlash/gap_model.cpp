@@ -200,7 +200,7 @@ THIMBLE_GAP_INLINE void move_lanes(const ArmMotion& motion, const Eigen::Vector3
   }
 }
 
-/// Bit-identical.
+/// The same with AVX2 instructions; the results are bit-identical.
 THIMBLE_FOR_AVX2 void move_wide(const ArmMotion& motion, const Eigen::Vector3d& p_middle,
                                 std::span<const GapRun> runs, std::size_t first,
                                 std::size_t count) {
