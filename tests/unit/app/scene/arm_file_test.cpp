@@ -125,7 +125,7 @@ TEST(ArmFile, NamesTheBoardsThatTheArmMayHave) {
   EXPECT_EQ(boards("vintage_phantom.yaml"), std::vector{BoardKind::kTextLines});
   EXPECT_EQ(mistake_with("board: text_lines", "board: [mbed_hid_14, text_lines]"), "");
   EXPECT_EQ(mistake_with("board: text_lines", ""), "");  // the protocol's usual one
-  EXPECT_NE(mistake_with("board: text_lines", "board: teensy").find("or a list of such"),
+  EXPECT_NE(mistake_with("board: text_lines", "board: teensy").find("or a list of them"),
             std::string::npos);
   EXPECT_NE(mistake_with("board: text_lines", "board: [text_lines, teensy]").find("or a list"),
             std::string::npos);
