@@ -35,7 +35,7 @@ YamlMap::YamlMap(const YAML::Node& node, std::string_view name, int line,
     mistakes_->add(line_, prefix + "expected a map of keys and values, found " + found(node));
     return;
   }
-  std::unordered_map<std::string_view, int> lines;  // of the keys, which `node` keeps
+  std::unordered_map<std::string_view, int> lines;  // by key; `node` owns the texts
   for (const auto& pair : node) {
     const int key_line = line_of(pair.first, line_);
     if (!pair.first.IsScalar()) {
@@ -45,7 +45,7 @@ YamlMap::YamlMap(const YAML::Node& node, std::string_view name, int line,
     const std::string& key = pair.first.Scalar();
     const auto [first, fresh] = lines.try_emplace(key, key_line);
     if (!fresh) {
-      mistakes_->add(key_line, key + ": stands twice, first in line " +
+      mistakes_->add(key_line, key + ": occurs twice, first in line " +
                                    std::to_string(first->second) + "; keep one of them");
       continue;
     }
@@ -62,13 +62,13 @@ const YamlMap::Entry* YamlMap::find(std::string_view key, bool required) {
     if (renamed.place != place_ || renamed.is != key) continue;
     for (Entry& entry : entries_) {
       if (entry.key != renamed.was) continue;
-      mistakes_->warn(entry.line, entry.key + ": is called " + std::string(key) +
-                                      " now; the old name still works, but write the new one");
+      mistakes_->warn(entry.line, entry.key + ": is now called " + std::string(key) +
+                                      "; the old name still works, but use the new one");
       entry.key = key;
       return &entry;
     }
   }
-  if (required && !quiet_) mistakes_->add(line_, std::string(key) + ": is missing here");
+  if (required && !quiet_) mistakes_->add(line_, std::string(key) + ": is missing");
   return nullptr;
 }
 
@@ -98,7 +98,7 @@ void YamlMap::expected(const Entry& entry, const std::string& what) {
 bool YamlMap::read_number(const Entry& entry, const YAML::Node& node, const std::string& what,
                           double min, double max, double& number) {
   const std::optional<double> value = to_number(node);
-  // Written so that NaN is refused.
+  // Written so that NaN is rejected.
   if (value && *value >= min && *value <= max) {
     number = *value;
     return true;
@@ -354,7 +354,7 @@ std::vector<YamlMap> YamlMap::require_maps(std::string_view key) {
   const Entry* entry = find(key, true);
   if (entry == nullptr) {
     if (mistakes_->keys() == nullptr) return maps;
-    // An entry whose keys are asked for, so that they are noted.
+    // An entry without values, so that its keys are requested and logged.
     maps.emplace_back(YAML::Node(YAML::NodeType::Map), key, line_, mistakes_);
     maps.back().quiet_ = true;
     maps.back().place_ = place;
@@ -388,8 +388,8 @@ void YamlMap::finish() {
   if (mistakes_->keys() != nullptr) mistakes_->keys()->finished(place_, asked_);
   for (const Entry& entry : entries_) {
     if (std::find(asked_.begin(), asked_.end(), entry.key) != asked_.end()) continue;
-    std::string sentence = entry.key + ": is no key that is known here";
-    if (mistakes_->full()) {  // it is only counted
+    std::string sentence = entry.key + ": unknown key";
+    if (mistakes_->full()) {  // only counted from here on
       mistakes_->add(entry.line, sentence);
       continue;
     }
@@ -397,10 +397,10 @@ void YamlMap::finish() {
       if (renamed.place != place_ || renamed.was != entry.key || key_line(renamed.is) == 0)
         continue;
       sentence = entry.key + ": is the old name of " + std::string(renamed.is) +
-                 ", which stands here too; keep the new one";
+                 ", which is here too; keep the new one";
     }
     const auto near = nearest_word(entry.key, asked_);
-    if (near) sentence += "; perhaps " + in_quotes(*near) + " was meant";
+    if (near) sentence += " (did you mean " + in_quotes(*near) + "?)";
     mistakes_->add(entry.line, sentence);
   }
 }

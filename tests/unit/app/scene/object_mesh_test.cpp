@@ -131,7 +131,7 @@ TEST(ObjectMesh, TellsWhenNothingIsLeft) {
   object.sheet_thickness = 0.001;
   const auto mesh = scene::load_object_mesh(object);
   ASSERT_FALSE(mesh.ok());
-  EXPECT_NE(mesh.error().message.find("no triangle of it has an area"), std::string::npos);
+  EXPECT_NE(mesh.error().message.find("no triangle has an area"), std::string::npos);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ TEST(ObjectSize, RefusesAPartInMillimetresWithoutScale) {
   EXPECT_EQ(objects.error().message,
             (kSmallMeshes / "mm50.stl").string() +
                 ": 50 m large, 250 times the reach of the arm (0.2 m); STL names no unit: set "
-                "scale: 0.001 if it counts in mm, or size (m).");
+                "scale: 0.001 if its unit is mm, or size (m).");
 }
 
 TEST(ObjectSize, TakesThatPartWithAScaleOrASize) {

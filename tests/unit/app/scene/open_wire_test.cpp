@@ -176,7 +176,7 @@ TEST_F(OpenSerialTest, AsksANamedBoardWhoItIsWithZeroCurrentsAlone) {
   const std::string refused = open("woodenhaptics_teensy");
   done.store(true);
   board.join();
-  EXPECT_NE(refused.find("answers as model 1"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("reports model 1"), std::string::npos) << refused;
   ASSERT_FALSE(heard.empty());
   for (std::size_t at = 0; at < heard.size(); at += 8) {
     EXPECT_EQ(heard.substr(at, 8), "[0,0,0]\n");

@@ -70,7 +70,8 @@ TEST(RealArm, IsChosenByNameOrAsTheOnlyOne) {
   EXPECT_NE(two.error().message.find("W1 (arm), F1 (arm)"), std::string::npos);
   EXPECT_EQ((*scene::choose_arm({arms[0], arms[1]}, "auto"))->serial, "W1");
   EXPECT_FALSE(scene::choose_arm({}, "auto")->has_value());
-  EXPECT_NE(scene::choose_arm({}, "W1").error().message.find("None is plugged in"),
+  EXPECT_NE(scene::choose_arm({}, "W1").error().message.find(
+                "No arm that Thimble can drive is plugged in"),
             std::string::npos);
   EXPECT_NE(scene::choose_arm(arms, "T1").error().message.find("not public"), std::string::npos);
 }

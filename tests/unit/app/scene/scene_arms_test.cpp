@@ -66,8 +66,8 @@ TEST(SceneArms, TellsWhatIsWrongWithSeveralArms) {
   const std::string two = arm_entry("left") + arm_entry("right");
   says(arm_entry("left"), "arms: expected two arms or more");
   says(arm_entry("left") + arm_entry("left"), "expected different names, found \"left\" twice");
-  says(two, "hand: cannot stand beside arms", "hand: {path: [{t: 0, at: [0, 0, 0]}]}\n");
-  says(two, "arm: cannot stand beside arms", "arm: arm.yaml\n");
+  says(two, "hand: cannot be used with arms", "hand: {path: [{t: 0, at: [0, 0, 0]}]}\n");
+  says(two, "arm: cannot be used with arms", "arm: arm.yaml\n");
   says(arm_entry("left") + arm_entry("../x"), "name: expected letters, digits and _");
   says(two, "faults", "faults: never\n");
   says(arm_entry("left") + arm_entry("right", ", at: {turn_degrees: 45}"),

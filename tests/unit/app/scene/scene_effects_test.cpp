@@ -49,9 +49,9 @@ TEST(SceneEffects, UnknownOrConflictingEffectsNameTheirLine) {
             std::string::npos);
   EXPECT_NE(mistake("  - {friction: bristle, texture: sandpaper}\n").find("entry of its own"),
             std::string::npos);
-  EXPECT_NE(mistake("  - {friction: bristle, coeficient: 0.4}\n")
-                .find("perhaps \"coefficient\" was meant"),
-            std::string::npos);
+  EXPECT_NE(
+      mistake("  - {friction: bristle, coeficient: 0.4}\n").find("did you mean \"coefficient\"?"),
+      std::string::npos);
   EXPECT_NE(mistake("  - {friction: bristle, coefficient: -1}\n").find("coefficient: expected"),
             std::string::npos);
   EXPECT_NE(mistake("  - {friction: bristle, coefficient: .nan}\n").find("coefficient: expected"),

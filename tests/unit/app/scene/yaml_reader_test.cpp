@@ -58,14 +58,13 @@ TEST(YamlReader, NamesTheMissingKey) {
 
 TEST(YamlReader, SuggestsTheNearestKnownKeyForAnUnknownOne) {
   EXPECT_EQ(mistakes_in("stiffness: 1\nnmae: a\n"),
-            "arm.yaml:2: nmae: is no key that is known here; perhaps \"name\" was meant.");
-  EXPECT_EQ(mistakes_in("stiffness: 1\nwxyzwxyz: a\n"),
-            "arm.yaml:2: wxyzwxyz: is no key that is known here.");
+            "arm.yaml:2: nmae: unknown key (did you mean \"name\"?).");
+  EXPECT_EQ(mistakes_in("stiffness: 1\nwxyzwxyz: a\n"), "arm.yaml:2: wxyzwxyz: unknown key.");
 }
 
 TEST(YamlReader, RefusesAKeyThatStandsTwice) {
   EXPECT_EQ(mistakes_in("stiffness: 1\nname: a\nstiffness: 2\n"),
-            "arm.yaml:3: stiffness: stands twice, first in line 1; keep one of them.");
+            "arm.yaml:3: stiffness: occurs twice, first in line 1; keep one of them.");
 }
 
 TEST(YamlReader, RefusesEmptyFilesInOneSentence) {
@@ -83,10 +82,9 @@ TEST(YamlReader, RefusesWhatIsNoMap) {
 
 TEST(YamlReader, TellsTheLineOfASyntaxError) {
   EXPECT_TRUE(
-      mistakes_in("name: a\nstiffness: [1, 2\n").starts_with("arm.yaml:3: is not proper YAML"));
-  EXPECT_TRUE(
-      mistakes_in("name: a\n stiffness: 1\n").starts_with("arm.yaml:2: is not proper YAML"));
-  EXPECT_TRUE(mistakes_in("name: *nobody\n").starts_with("arm.yaml:1: is not proper YAML"));
+      mistakes_in("name: a\nstiffness: [1, 2\n").starts_with("arm.yaml:3: is not valid YAML"));
+  EXPECT_TRUE(mistakes_in("name: a\n stiffness: 1\n").starts_with("arm.yaml:2: is not valid YAML"));
+  EXPECT_TRUE(mistakes_in("name: *nobody\n").starts_with("arm.yaml:1: is not valid YAML"));
 }
 
 TEST(YamlReader, AnswersHugeNestingWithASentence) {
