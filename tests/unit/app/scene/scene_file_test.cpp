@@ -183,7 +183,7 @@ TEST(SceneFile, TakesAnArmByNameUnlessAFileOfThatNameLiesBesideIt) {
 
 TEST(SceneFile, RefusesSizeTogetherWithScale) {
   EXPECT_NE(mistake("  - {name: b, mesh: cgal:ball.off, size: 1, scale: 1, stiffness: 1}\n", kWait)
-                .find("scale: cannot stand together with size"),
+                .find("scale: cannot be used with size"),
             std::string::npos);
 }
 
