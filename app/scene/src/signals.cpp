@@ -20,7 +20,7 @@ constexpr int kSignals[] = {SIGINT,  SIGTERM,   SIGHUP,  SIGQUIT, SIGUSR1, SIGUS
 
 std::int64_t monotonic_ns() noexcept {
   timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);  // async-signal-safe [POSIX]
+  clock_gettime(CLOCK_MONOTONIC, &now);  // async-signal-safe (POSIX)
   return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
 }
 
@@ -43,7 +43,7 @@ void end_by(int number) noexcept {
   raise(number);  // delivered when the handler returns
 }
 
-// Calls only functions that are async-signal-safe [POSIX]: clock_gettime, sigaction, raise,
+// Calls only functions that are async-signal-safe (POSIX): clock_gettime, sigaction, raise,
 // timer_settime.
 void on_signal(int number, siginfo_t* info, void*) {
   const int error = errno;

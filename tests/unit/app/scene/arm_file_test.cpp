@@ -22,7 +22,7 @@ std::string content() {
   return text.str();
 }
 
-// Reads the shipped arm with one piece of text replaced, and tells what was wrong with it.
+// Reads the shipped arm with one piece of text replaced. Returns the mistakes.
 std::string mistake_with(const std::string& piece, const std::string& by) {
   std::string text = content();
   const std::size_t at = text.find(piece);
@@ -34,7 +34,7 @@ std::string mistake_with(const std::string& piece, const std::string& by) {
   return arm ? "" : arm.error().message;
 }
 
-TEST(ArmFile, ReadsTheShippedArmToTheLastConstant) {
+TEST(ArmFile, ReadsEveryConstantOfAShippedArm) {
   const auto read = scene::load_arm(kArm);
   ASSERT_TRUE(read.ok()) << read.error().message;
   const scene::ArmFile& arm = *read;
@@ -124,7 +124,7 @@ TEST(ArmFile, NamesTheBoardsThatTheArmMayHave) {
                                                 BoardKind::kTextLines}));
   EXPECT_EQ(boards("vintage_phantom.yaml"), std::vector{BoardKind::kTextLines});
   EXPECT_EQ(mistake_with("board: text_lines", "board: [mbed_hid_14, text_lines]"), "");
-  EXPECT_EQ(mistake_with("board: text_lines", ""), "");  // the protocol's usual one
+  EXPECT_EQ(mistake_with("board: text_lines", ""), "");  // the usual board of the protocol
   EXPECT_NE(mistake_with("board: text_lines", "board: teensy").find("or a list of them"),
             std::string::npos);
   EXPECT_NE(mistake_with("board: text_lines", "board: [text_lines, teensy]").find("or a list"),
@@ -135,11 +135,12 @@ TEST(ArmFile, NamesTheBoardsThatTheArmMayHave) {
             std::string::npos);
 }
 
-TEST(ArmFile, SaysWhatTheMotorsCarryForLongOrNothingOfIt) {
+TEST(ArmFile, ReadsThermalLimitsOfTheMotorsOrNone) {
   const auto read = scene::load_arm(kArm);
   ASSERT_TRUE(read.ok()) << read.error().message;
   ASSERT_TRUE(read->heat.named());
-  // 1.4 N at the home pose's tip through link and capstan, the data sheet's continuous force.
+  // The continuous force of the data sheet is 1.4 N at the tip in the home pose, through link and
+  // capstan.
   const double arms[] = {0.138, 0.138, 0.112};  // m
   for (std::size_t i = 0; i < 3; ++i) {
     const driver::MotorDrive& drive = read->model.drives[i];
@@ -165,7 +166,7 @@ TEST(ArmFile, SaysWhatTheMotorsCarryForLongOrNothingOfIt) {
   EXPECT_FALSE(falcon->heat.named());
 }
 
-TEST(ArmFile, SaysHowLongAForceIsHeldUnchangedAndHowHeavyTheTipIs) {
+TEST(ArmFile, ReadsHoldTimeAndTipMass) {
   scene::ArmFile arm = *scene::load_arm(kArm);
   EXPECT_EQ(scene::motion_settings(arm, 1000).hold_most, 10);
   EXPECT_EQ(scene::motion_settings(arm, 1000).mass, 0.075);
@@ -214,7 +215,7 @@ TEST(ArmFile, DescribesTheGimbalThatIsMounted) {
                 .find("sign: expected each to be 1 or -1"),
             std::string::npos);
   EXPECT_NE(mistake("gimbal:\n  sign: [1, 1, 1]\n").find("counts_per_turn"), std::string::npos);
-  // 8-byte reports have no room for it, and a simulated hand turns only what is there.
+  // 8-byte reports have no room for a gimbal, and a simulated hand can only rotate an existing one.
   EXPECT_NE(mistake_with("protocol: hfab_14_byte", "protocol: woody_8_byte\n" + good)
                 .find("contain no gimbal encoders"),
             std::string::npos);
@@ -237,12 +238,12 @@ TEST(ArmFile, RefusesALengthInMillimetres) {
             std::string::npos);
 }
 
-TEST(ArmFile, RefusesAWorkspaceTurnedInsideOut) {
+TEST(ArmFile, RejectsAWorkspaceWithMinAboveMax) {
   EXPECT_NE(mistake_with("max: [0.1, 0.1, 0.1]", "max: [0.1, -0.2, 0.1]").find("max: expected"),
             std::string::npos);
 }
 
-TEST(ArmFile, RefusesLimitsThatProtectNobodyWithTheirLine) {
+TEST(ArmFile, RejectsUnsafeLimitsWithTheirLine) {
   struct Case {
     const char *piece, *by, *mistake;
   };
@@ -263,7 +264,7 @@ TEST(ArmFile, RefusesLimitsThatProtectNobodyWithTheirLine) {
     EXPECT_NE(mistake_with(wrong.piece, wrong.by).find(wrong.mistake), std::string::npos)
         << wrong.by << " gave: " << mistake_with(wrong.piece, wrong.by);
   }
-  // The bounds themselves are good.
+  // The bounds themselves are valid.
   EXPECT_EQ(mistake_with("soft_start: 0.3", "soft_start: 0.05"), "");
   EXPECT_EQ(mistake_with("watchdog: 0.1 ", "watchdog: 1 "), "");
   EXPECT_EQ(mistake_with("rise_max: 2000", "rise_max: 1e5"), "");

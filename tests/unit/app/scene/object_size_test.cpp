@@ -36,7 +36,7 @@ TEST(ObjectSize, RefusesAPartInMillimetresWithoutScale) {
                 "scale: 0.001 if its unit is mm, or size (m).");
 }
 
-TEST(ObjectSize, TakesThatPartWithAScaleOrASize) {
+TEST(ObjectSize, AcceptsAPartInMillimetresWithScaleOrSize) {
   Scene scene = scene_of("mm50.stl");
   scene.objects[0].scale = 0.001;
   EXPECT_TRUE(SceneObjects::build(scene).ok());
@@ -45,7 +45,7 @@ TEST(ObjectSize, TakesThatPartWithAScaleOrASize) {
   EXPECT_TRUE(SceneObjects::build(scene).ok());
 }
 
-TEST(ObjectSize, RefusesFarTooLargeMeshesWhateverIsStated) {
+TEST(ObjectSize, RejectsHugeMeshesWithAnyUnit) {
   Scene scene = scene_of("mm50.stl");
   scene.objects[0].scale = 1;
   const auto objects = SceneObjects::build(scene);
@@ -65,7 +65,7 @@ TEST(ObjectSize, ReportsALargeMeshWithoutAUnit) {
       << (*objects)->notes()[0];
 }
 
-TEST(ObjectSize, SaysNothingWhereTheSizeIsStated) {
+TEST(ObjectSize, IsSilentIfTheSizeIsSet) {
   SceneObject stated;
   stated.size = 10;
   EXPECT_EQ(*judge_size(stated, {.side = 10, .kind = "STL", .has_unit = false}, 0.2), "");
@@ -74,7 +74,7 @@ TEST(ObjectSize, SaysNothingWhereTheSizeIsStated) {
   EXPECT_EQ(*judge_size(plain, {.side = 10, .kind = "STL", .has_unit = false}, 0), "");
 }
 
-TEST(ObjectSize, TakesTheLargestOfSeveralArms) {
+TEST(ObjectSize, UsesTheLargestOfSeveralArms) {
   Scene scene = scene_of("box.off");
   EXPECT_DOUBLE_EQ(reach_of(scene), 0.2);
   scene.arms.emplace_back();

@@ -8,7 +8,7 @@
 #include "support/scratch.h"
 #include "thimble/scene/scene_file.h"
 
-// The list `arms` of a scene.
+// List `arms` of a scene.
 
 namespace thimble {
 namespace {
@@ -45,7 +45,7 @@ TEST(SceneArms, PlacesEachOfSeveralArms) {
   const scene::SceneArm& right = scene->arms[1];
   EXPECT_EQ(right.name, "right");
   EXPECT_EQ(right.hand.size(), 1U);
-  const Eigen::Vector3d p = scene->arms.front().arm.p_WB;  // where the arm stands alone
+  const Eigen::Vector3d p = scene->arms.front().arm.p_WB;  // place of the arm without `at`
   const Eigen::Vector3d placed(-p.y() + 0.01, p.x() + 0.2, p.z() + 0.03);
   EXPECT_LT((right.arm.p_WB - placed).norm(), 1e-15);
   Eigen::Matrix3d R;
@@ -56,7 +56,7 @@ TEST(SceneArms, PlacesEachOfSeveralArms) {
   EXPECT_EQ(read_several(arm_entry("a") + arm_entry("b"))->faults, scene::FaultRule::kTogether);
 }
 
-TEST(SceneArms, TellsWhatIsWrongWithSeveralArms) {
+TEST(SceneArms, ReportsMistakesInSeveralArms) {
   const auto says = [](const std::string& arms, const std::string& said,
                        const std::string& more = "") {
     const auto scene = read_several(arms, more);

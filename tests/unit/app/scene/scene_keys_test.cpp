@@ -1,5 +1,5 @@
-// The reference of keys says what the readers do: every key that a shipped file has, and none that
-// its reader would refuse.
+// The reference of keys matches the readers: it has every key of the shipped files, with unit,
+// limits and default.
 #include "scene_keys.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ bool has(const std::vector<KeyNote>& keys, const std::string& place, const std::
                      [&](const KeyNote& note) { return note.place == place && note.key == key; });
 }
 
-/// Collects the keys of a file that the reference does not have.
+/// Collects the keys of a file that are missing in the reference.
 void collect_unknown(const YAML::Node& node, const std::string& place,
                      const std::vector<KeyNote>& keys, std::set<std::string>& unknown) {
   if (node.IsSequence()) {

@@ -1,4 +1,4 @@
-// Characters that a YAML file cannot have at their place: named with line and column.
+// Characters that YAML does not allow where they are: reported with line and column.
 #include "yaml/yaml_text.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace thimble::scene {
 namespace {
 
-/// Reads a scene-like text and returns its mistakes.
+/// Reads a text similar to a scene and returns its mistakes.
 std::string mistakes_of_text(const std::string& text) {
   auto file = YamlFile::parse(text, "s.yaml");
   if (!file) return file.error().message;
@@ -51,7 +51,7 @@ TEST(YamlText, OnlyShortestFormsOfCharactersAreUtf8) {
   }
 }
 
-TEST(YamlText, AllOfUtf8IsTaken) {
+TEST(YamlText, AcceptsAllOfUtf8) {
   EXPECT_FALSE(
       find_invalid_utf8("a\xc2\x80\xdf\xbf\xe0\xa0\x80\xed\x9f\xbf\xee\x80\x80\xef\xbf\xbf"
                         "\xf0\x90\x80\x80\xf4\x8f\xbf\xbf\n"));
@@ -95,7 +95,7 @@ TEST(YamlText, NoBreakSpaceBehindANumberIsNamed) {
             "instead.");
 }
 
-TEST(YamlText, BlanksWithinTextsAreFree) {
+TEST(YamlText, BlanksWithinTextsAreAllowed) {
   EXPECT_EQ(mistakes_of_text("name: 5\xc2\xa0N\trate\nrate:\t7\t# 5\xc2\xa0Hz\n\t\n"), "");
   EXPECT_EQ(mistakes_of_text("name: \"\xc2\xa0\"\nrate: 7\n"), "");
   EXPECT_EQ(mistakes_of_text("{\n\t\"rate\": 7\n}\n"), "");
