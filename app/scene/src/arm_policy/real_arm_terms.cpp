@@ -67,7 +67,7 @@ driver::Result<RealArmTerms> terms_for(const driver::FoundArm& arm, const RealAr
   terms.force_most = kFeelCheckForceMax;
   terms.told.push_back(
       fmt::format("{} has not passed the feel check with this arm file, calibration and firmware, "
-                  "so this run is limited to {:g} N. To check it: ",
+                  "so this run gives it at most {:g} N. To check it: ",
                   arm.name(), kFeelCheckForceMax) +
       command);
   return terms;

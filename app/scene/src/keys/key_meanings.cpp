@@ -13,11 +13,11 @@ constexpr KeyMeaning kArmMeanings[] = {
 #include "keys/arm_meanings.inc"
 };
 
-/// Returns whether a place of the table, which ends with `*`, stands for `place`.
-bool stands_for(std::string_view pattern, std::string_view place) {
+/// Returns whether a place of the table that ends with `*` matches `place`.
+bool matches(std::string_view pattern, std::string_view place) {
   if (!pattern.ends_with('*')) return false;
   pattern.remove_suffix(1);
-  // Lists within an effect ("effects[] texture: sines.waves[]") have their own meanings.
+  // Lists within an effect ("effects[] texture: sines.waves[]") have their own rows.
   return place.starts_with(pattern) &&
          place.substr(pattern.size()).find('.') == std::string_view::npos;
 }
@@ -43,7 +43,7 @@ const KeyMeaning* meaning_of(std::span<const KeyMeaning> meanings, std::string_v
   if (const auto* exact = find([&](std::string_view known) { return known == place; })) {
     return exact;
   }
-  if (const auto* group = find([&](std::string_view known) { return stands_for(known, place); })) {
+  if (const auto* group = find([&](std::string_view known) { return matches(known, place); })) {
     return group;
   }
   constexpr std::string_view kEntry = "arms[].";

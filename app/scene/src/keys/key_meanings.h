@@ -7,8 +7,8 @@ namespace thimble::scene {
 
 /// Meaning of a key.
 struct KeyMeaning {
-  /// Map that contains the key, as in KeyNote. A place that ends with `*` stands for every place
-  /// that begins so.
+  /// Map that contains the key, as in KeyNote. A place that ends with `*` matches every place with
+  /// this prefix, except lists within it.
   std::string_view place;
   std::string_view key;       ///< Name of the key.
   std::string_view sentence;  ///< Meaning in one sentence of at most 22 words.

@@ -87,7 +87,7 @@ TEST_F(OutputPathTest, LinkLoopsAreRejected) {
   fs::create_symlink("a", folder_ / "b");
   const auto place = resolve_output(folder_ / "a");
   ASSERT_FALSE(place);
-  EXPECT_TRUE(holds(place.error().message, "circle")) << place.error().message;
+  EXPECT_TRUE(holds(place.error().message, "loop")) << place.error().message;
 }
 
 TEST_F(OutputPathTest, MissingFolderIsNamed) {
@@ -213,7 +213,7 @@ TEST_F(OutputFileTest, FullDiskKeepsTheOldFileAndLeavesNoPart) {
     const rlimit none{1, 1};
     if (setrlimit(RLIMIT_FSIZE, &none) != 0) _exit(2);
     const auto written = write_file(path, kTable, kNewTable);
-    _exit(written ? 3 : holds(written.error().message, "Make room") ? 0 : 4);
+    _exit(written ? 3 : holds(written.error().message, "Free some space") ? 0 : 4);
   }
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
