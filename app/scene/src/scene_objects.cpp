@@ -48,22 +48,22 @@ driver::Result<std::vector<MeshPointer>> load_meshes(const Scene& scene, SharedM
 
 using Touched = driver::Result<std::unique_ptr<render::ObjectTouch>>;
 
-/// Says which object a sentence is about.
+/// Returns the name of an object in messages: its file, or its name in the scene.
 std::string name_of(const SceneObject& object) {
   return object.mesh_file.empty() ? object.name : object.mesh_file.string();
 }
 
-/// Returns what a scene can do about a mesh that contact refuses, as a sentence to follow another.
+/// Returns a sentence with the remedy for a mesh that contact rejects; empty if there is none.
 std::string remedy_for(const SceneObject& object, const render::TriangleMesh& mesh_W) {
   if (object.mesh_file.empty() || object.sheet_thickness) return {};
   if (render::check_mesh(mesh_W).touchable()) return {};
-  return object.repair
-             ? " Set open: {thickness: 0.001} as well, to touch it as a sheet."
-             : " Set repair: true, and where that is not enough, open: {thickness: 0.001}; "
-               "thimble mesh tells which.";
+  return object.repair ? " Set open: {thickness: 0.001} as well, to touch it as a sheet."
+                       : " Set repair: true and, if that is not enough, open: {thickness: 0.001}; "
+                         "`thimble mesh` "
+                         "prints which one is needed.";
 }
 
-/// Returns what the surface of an object is made of.
+/// Returns the surface settings of an object.
 render::SurfaceChoice surface_of(const SceneObject& object) {
   return {.spring = {.stiffness = object.stiffness, .damping = object.damping},
           .effects = object.effects,
@@ -71,7 +71,7 @@ render::SurfaceChoice surface_of(const SceneObject& object) {
           .shape = object.body.shape};
 }
 
-/// Returns an error about an object that contact, or a body, refuses.
+/// Returns the error for an object that contact or a body rejects.
 driver::Error refused(const SceneObject& object, const render::TriangleMesh& mesh_W,
                       const driver::Error& error) {
   return driver::Error{name_of(object) + ": " + error.message + remedy_for(object, mesh_W)};

@@ -71,7 +71,7 @@ TEST(ArmFile, DeclaresAContinuousForceWhereOneIsPublished) {
   };
   EXPECT_EQ(declared("vintage_phantom"), 1.4);
   EXPECT_EQ(declared("touch"), 0.88);
-  EXPECT_EQ(declared("falcon"), 0) << "nobody has published one";
+  EXPECT_EQ(declared("falcon"), 0) << "no published value";
   EXPECT_NE(mistake_with("continuous_force: 1.4", "continuous_force: 5.1")
                 .find("continuous_force: expected at most the declared force"),
             std::string::npos);
