@@ -208,9 +208,9 @@ def test_example_finds_the_parameters_of_its_subject(source, tmp_path):
             time.sleep(0.005)
         left.kill()
     said = subprocess.run(example, check=True, capture_output=True, text=True).stdout
-    assert re.search(r"Goes on after [1-9]", said)
+    assert re.search(r"Continues after [1-9]", said)
     # Noise of 0.1 and strokes with a scatter of 0.2: sqrt(2) * 0.22 * 0.674 is 21 %.
-    threshold = float(re.search(r"told in 79 % at ([0-9.]+)", said)[1])
+    threshold = float(re.search(r"identified in 79 % at ([0-9.]+)", said)[1])
     equal, jnd = (float(one) for one in re.search(r"equal at ([0-9.]+) .*JND ([0-9.]+) %", said).groups())
     assert 1.15 < threshold < 1.5 and 0.85 < equal < 1.15 and 14 < jnd < 30
     assert len(experiment.read_log(tmp_path / "constant.jsonl")[1]) == 112

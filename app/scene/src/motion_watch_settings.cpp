@@ -8,9 +8,10 @@
 namespace thimble::scene {
 
 driver::MotionWatchSettings motion_settings(const ArmFile& arm, double rate) {
-  // Desk-top arms have 45 to 150 g [DEVICES 3]; the watch bears a factor of 1.4 each way and more.
+  // Desk-top arms have 45 to 150 g [DEVICES 3]; the motion watch tolerates an error of the mass by
+  // more than a factor of 1.4 in both directions.
   constexpr double kUsualMass = 0.1;  // kg
-  constexpr double kDelayMost = 10;   // ticks; a later force is not compared with the motion
+  constexpr double kDelayMost = 10;   // ticks; after that a force is not compared with the motion
   driver::MotionWatchSettings settings;
   const double simulated = arm.can_simulate ? arm.simulated.plant.mass : kUsualMass;
   settings.mass = arm.energy.mass.value_or(simulated);

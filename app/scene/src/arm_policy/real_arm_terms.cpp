@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns what checks this arm, to be typed as it is.
+/// Returns the command that checks this arm, ready to be copied.
 std::string check_command(const driver::FoundArm& arm, const RealArmRequest& request) {
   std::string command = "thimble feel-check --device " + arm.name();
   if (!request.arm_file.empty()) command += " --arm " + request.arm_file.string();
@@ -56,17 +56,18 @@ driver::Result<RealArmTerms> terms_for(const driver::FoundArm& arm, const RealAr
   const std::string command = check_command(arm, request);
   if (request.unchecked) {
     terms.feel_check = FeelCheckState::kUnchecked;
-    terms.told.push_back(fmt::format("UNCHECKED: {} gets up to {:g} N though it has passed no feel "
-                                     "check as it is now. To check it: ",
-                                     arm.name(), terms.arm.file.limits.force_max) +
-                         command);
+    terms.told.push_back(
+        fmt::format("UNCHECKED: {} gets up to {:g} N although it has not passed the "
+                    "feel check in its present state. To check it: ",
+                    arm.name(), terms.arm.file.limits.force_max) +
+        command);
     return terms;
   }
   terms.feel_check = FeelCheckState::kNone;
   terms.force_most = kFeelCheckForceMax;
   terms.told.push_back(
-      fmt::format("{} has passed no feel check with this arm file, calibration and firmware, so "
-                  "this run gives it at most {:g} N. To check it: ",
+      fmt::format("{} has not passed the feel check with this arm file, calibration and firmware, "
+                  "so this run gives it at most {:g} N. To check it: ",
                   arm.name(), kFeelCheckForceMax) +
       command);
   return terms;
@@ -82,7 +83,7 @@ driver::Result<std::vector<std::string>> put_on_terms(Scene& scene, const fs::pa
   if (!same && is_installed_arm(scene.arms.front().own_arm_file)) {
     told.push_back(scene_file.string() + ": its arm, " +
                    scene.arms.front().own_arm_file.stem().string() +
-                   ", is what it is simulated with; a real arm has its own.");
+                   ", is used for the simulation only; a real arm has its own file.");
   } else if (!same) {
     const auto own = load_arm(scene.arms.front().own_arm_file);
     if (!own) return own.error();
@@ -95,7 +96,7 @@ driver::Result<std::vector<std::string>> put_on_terms(Scene& scene, const fs::pa
     const auto energy = tighten_energy(scene.arms.front().arm, terms.arm.path, *scene.energy,
                                        scene_file, scene.energy_line);
     if (energy) told.push_back(*energy);
-    scene.energy.reset();  // the arm has it now
+    scene.energy.reset();  // now part of the arm file
   }
   scene.arms.front().arm.limits.force_max =
       std::min(scene.arms.front().arm.limits.force_max, terms.force_most);

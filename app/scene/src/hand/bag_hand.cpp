@@ -11,8 +11,9 @@ namespace thimble::scene {
 driver::Result<std::vector<HandWaypoint>> read_bag_hand(const std::filesystem::path& bag,
                                                         const std::string& topic,
                                                         bag::BagAxes axes) {
-  constexpr double kFarthest = 2;  // m, as of a path
-  // Ten times as often as a hand moves by itself; a nanosecond less, for times that are rounded.
+  constexpr double kFarthest = 2;  // m, as for a path in a scene
+  // Ten samples per period of the fastest hand motion; one nanosecond less, because times are
+  // rounded.
   constexpr double kApart = 0.01 - 1e-9;  // s [chosen]
   const auto read = bag::read_bag(bag, bag::BagKind::kPositions, topic);
   if (!read) return read.error();

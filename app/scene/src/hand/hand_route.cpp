@@ -17,19 +17,20 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSampleTime = 0.002;  // s [chosen: 25 samples in the shortest sway of a tremor]
+constexpr double kSampleTime = 0.002;  // s [chosen: 25 samples in the shortest period of a tremor]
 
-// A closest point runs faster than its question where the surface is hollow; beyond this ratio it
-// is a jump to another part of the surface. [chosen: loose enough for folds]
+// In a groove of the surface, the closest point moves faster than the point for which it is
+// computed. Beyond this ratio it has jumped to another part of the surface. [chosen: large enough
+// for folds]
 constexpr double kRunMax = 8;
 constexpr double kJumpMin = 0.002;  // m; a smaller jump is a crease, not another part [chosen]
 
-// A hand cannot follow a kink of the surface faster than it can move at all (about 10 Hz), so the
-// path over the surface is averaged over this time. [chosen]
-constexpr int kSmoothSamples = 15;  // to each side: 60 ms in all
+// A hand cannot follow a kink of the surface faster than it can move (about 10 Hz), so the path
+// over the surface is averaged over this time. [chosen]
+constexpr int kSmoothSamples = 15;  // on each side: 60 ms in total
 
-// Where the hand is between the stations: a quintic with given speeds and no acceleration at its
-// ends. With no speed either it is the minimum-jerk stroke of human reaching [M Flash, Hogan 1985].
+// Motion between two waypoints: a quintic with given velocities and zero acceleration at its ends.
+// With zero velocities it is the minimum-jerk stroke of human reaching [M Flash, Hogan 1985].
 struct Quintic {
   Vector3d from, to;
   Vector3d speed_from, speed_to;
@@ -48,7 +49,8 @@ bool follows_surface(const HandWaypoint& from, const HandWaypoint& to) {
   return from.on && to.on && *from.on == *to.on;
 }
 
-// Averages each point of a stretch over its neighbours, fewer towards the ends, which stay.
+// Averages each point of a stretch over its neighbours. Towards the ends there are fewer
+// neighbours, and the end points do not change.
 void smooth(HandRoute& route, std::size_t first, std::size_t last) {
   const HandRoute raw(route.begin() + static_cast<std::ptrdiff_t>(first),
                       route.begin() + static_cast<std::ptrdiff_t>(last) + 1);
@@ -63,18 +65,19 @@ void smooth(HandRoute& route, std::size_t first, std::size_t last) {
 
 driver::Error no_path_error(const HandWaypoint& from, const HandWaypoint& to) {
   std::ostringstream text;
-  text << "The hand's path from t = " << from.time << " s to " << to.time << " s finds none over \""
-       << *from.on << "\", whose parts do not hang together there: put a station between them.";
+  text << "hand.path: there is no path from t = " << from.time << " s to " << to.time
+       << " s over \"" << *from.on
+       << "\", whose parts are not connected there; add a waypoint in between.";
   return {text.str()};
 }
 
-// The share of the path that the hand has gone after the share `s` of the time, at rest at both
-// ends.
+// Returns the fraction of the path that the hand has covered after the fraction `s` of the time.
+// The hand is at rest at both ends.
 double eased(double s) {
   return s * s * s * (10 + s * (6 * s - 15));
 }
 
-// A path of straight pieces, asked by the share of its length.
+// Polyline, evaluated at a fraction of its length.
 class LongPath {
  public:
   explicit LongPath(std::vector<Vector3d> points) : points_(std::move(points)), gone_{0} {
@@ -97,13 +100,14 @@ class LongPath {
   std::vector<double> gone_;  // length up to each point, m
 };
 
-// Where the hand goes where the straight path jumps.
+// Path of the hand where the straight path jumps.
 struct Detour {
   LongPath path;
   bool on_surface = false;
 };
 
-// Plans one route; `routed` says which stretches take a detour, because the straight path jumps.
+// Plans one route. `routed_` holds the stretches that take a detour, because the straight path
+// jumps there.
 class Plan {
  public:
   Plan(const std::vector<HandWaypoint>& waypoints, const std::vector<NamedMesh>& objects)
@@ -116,11 +120,11 @@ class Plan {
 
   driver::Result<HandRoute> run() {
     if (auto known = check(); !known) return known.error();
-    // Free stretches that end on the surface lead to the pressed point, not to the one near it.
+    // Free stretches that end on the surface lead to the pressed point, not to the closest point.
     for (const HandWaypoint& w : waypoints_) {
       stations_.push_back(w.on ? pressed(probes_.at(*w.on).closest(w.p_W), w.press) : w.p_W);
     }
-    // Each round finds one more stretch that jumps.
+    // Each iteration finds one more stretch that jumps.
     for (;;) {
       const std::size_t jumps_at = try_once();
       if (jumps_at == waypoints_.size()) return std::move(route_);
@@ -137,23 +141,24 @@ class Plan {
   }
 
   driver::Result<void> check() const {
-    if (waypoints_.empty()) return driver::Error{"The hand's path has no station."};
+    if (waypoints_.empty()) return driver::Error{"hand.path is empty; add waypoints."};
     for (std::size_t i = 1; i < waypoints_.size(); ++i) {
       if (waypoints_[i].time > waypoints_[i - 1].time) continue;
       std::ostringstream text;
-      text << "The hand's path has t = " << waypoints_[i].time
-           << " s after t = " << waypoints_[i - 1].time << " s: times must grow.";
+      text << "hand.path: t = " << waypoints_[i].time << " s follows t = " << waypoints_[i - 1].time
+           << " s; times must increase.";
       return driver::Error{text.str()};
     }
     for (const HandWaypoint& w : waypoints_) {
       if (w.on && !probes_.contains(*w.on)) {
-        return driver::Error{"The hand's path touches \"" + *w.on + "\", which is no object here."};
+        return driver::Error{"hand.path: \"" + *w.on + "\" is not an object of the scene."};
       }
     }
     return {};
   }
 
-  // Speed at station `i`: zero where the hand rests, else the mean over its neighbours.
+  // Returns the velocity at waypoint `i`: zero if the hand rests there, else the mean over its
+  // neighbours.
   Vector3d speed_at(std::size_t i) const {
     const auto& w = waypoints_;
     if (i == 0 || i + 1 == w.size() || w[i].stop) return Vector3d::Zero();
@@ -162,10 +167,12 @@ class Plan {
     return (w[i + 1].p_W - w[i - 1].p_W) / (w[i + 1].time - w[i - 1].time);
   }
 
-  // Plans all stretches. Returns the first that cannot be gone as it is, or the number of stations.
+  // Plans all stretches. Returns the first that cannot be planned as it is, or the number of
+  // waypoints.
   std::size_t try_once() {
     route_ = {{waypoints_.front().time, stations_.front()}};
-    std::size_t run_begin = 0;  // where in the route the present stretch on the surface began
+    std::size_t run_begin =
+        0;  // index in the route at which the present stretch on the surface begins
     for (std::size_t i = 0; i + 1 < waypoints_.size(); ++i) {
       const HandWaypoint& to = waypoints_[i + 1];
       const bool on_surface = follows_surface(waypoints_[i], to);
@@ -207,7 +214,8 @@ class Plan {
     return true;
   }
 
-  // Finds a path over the surface where it hangs together, else over what lies between its parts.
+  // Finds a path over the surface if it is connected there, else through the space between its
+  // parts.
   std::optional<Detour> find_detour(std::size_t i) {
     const HandWaypoint& from = waypoints_[i];
     const HandWaypoint& to = waypoints_[i + 1];
@@ -244,10 +252,10 @@ class Plan {
   }
 
   const std::vector<HandWaypoint>& waypoints_;
-  std::vector<bool> routed_;  // of the stretch that begins at each station
+  std::vector<bool> routed_;  // by the waypoint at which a stretch begins
   std::map<std::string, SurfaceProbe> probes_;
   std::map<std::string, SurfaceRoute> routes_;
-  std::map<std::size_t, Detour> detours_;  // those found, by the station where they begin
+  std::map<std::size_t, Detour> detours_;  // found detours, by the waypoint at which they begin
   std::vector<Vector3d> stations_;
   HandRoute route_;
 };

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The distance from a box is shortened by this share, so that its rounding hides no sphere.
+// The distance from a box is reduced by this fraction, so that rounding cannot exclude a sphere.
 constexpr double kRounding = 1e-12;
 
 }  // namespace
@@ -19,7 +19,7 @@ constexpr double kRounding = 1e-12;
 SphereTree::SphereTree(std::vector<Sphere> spheres) : spheres_(std::move(spheres)) {
   for (std::size_t i = 0; i < spheres_.size(); ++i) spheres_[i].number = i;
   if (spheres_.empty()) return;
-  // Halving rounds up at most once per level: one level more than the whole number of halvings.
+  // Each division by two rounds up at most once, so there is one level more than whole divisions.
   nodes_.resize(4 * std::bit_ceil((spheres_.size() + kLeaf - 1) / kLeaf));
   build(0, 0, spheres_.size());
 }
@@ -44,7 +44,7 @@ void SphereTree::build(std::size_t node, std::size_t begin, std::size_t end) {
   build(2 * node + 2, middle, end);
 }
 
-// Returns a distance that no center of a node's spheres is below.
+// Returns a lower bound of the distance from a point to the centres of the spheres of a node.
 double SphereTree::distance(std::size_t node, const Vector3d& p) const {
   return (1 - kRounding) * std::sqrt(nodes_[node].centers.squaredExteriorDistance(p));
 }

@@ -20,7 +20,7 @@ std::shared_ptr<spdlog::sinks::sink> console_sink(const char* pattern, level_enu
 
 constexpr const char* kSaid = "thimble: %v";
 
-/// The loggers of this process and where they write.
+/// Loggers of this process, and their destinations.
 struct Log {
   Log(Talk asked_talk, std::shared_ptr<LogFile> to) : file(std::move(to)), talk(asked_talk) {
     const bool more = talk == Talk::kDebug || talk == Talk::kTrace;
@@ -49,7 +49,7 @@ struct Log {
 };
 
 std::unique_ptr<Log>& log() {
-  // Never destroyed: threads may still write at the end.
+  // Never destroyed: threads may still write at exit.
   static auto* const only = new std::unique_ptr<Log>(new Log(Talk::kNormal, nullptr));
   return *only;
 }

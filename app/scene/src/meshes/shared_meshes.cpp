@@ -20,7 +20,7 @@ namespace {
 using MeshPointer = std::shared_ptr<const render::TriangleMesh>;
 using NamedPointers = std::vector<std::pair<std::string, MeshPointer>>;
 
-/// What tells a file from the same one before it was changed.
+/// State of a file that detects a change of its contents.
 struct FileState {
   std::uintmax_t size = 0;
   std::filesystem::file_time_type changed;
@@ -29,11 +29,11 @@ struct FileState {
 };
 
 FileState state_of(const std::filesystem::path& file) {
-  std::error_code absent;  // who reads it says so
+  std::error_code absent;  // reported by the reader of the file
   return {std::filesystem::file_size(file, absent), std::filesystem::last_write_time(file, absent)};
 }
 
-/// What a mesh depends on that is read from a file.
+/// Everything that determines a mesh from a file.
 struct MeshKey {
   explicit MeshKey(const SceneObject& object)
       : file(std::filesystem::absolute(object.mesh_file).lexically_normal()),
@@ -56,7 +56,7 @@ struct MeshKey {
   Eigen::Vector3d p_WO;
 };
 
-/// Things by what they are made of; few enough to be looked through.
+/// Values by key, few enough for a linear search.
 template <class Key, class Value>
 class Shelf {
  public:
@@ -112,7 +112,7 @@ std::size_t SharedMeshes::surfaces() const {
 
 void SharedMeshes::drop_unused() {
   const std::scoped_lock lock(held_->mutex);
-  // What is made of others goes before them.
+  // Objects are removed before those that they are made from.
   held_->routes.drop_unused();
   held_->surfaces.drop_if([](const auto& still) { return still->search.use_count() == 1; });
   held_->joined.drop_unused();

@@ -125,7 +125,7 @@ const OutputKind kTable{.name = "a table (CSV)", .matches = is_table};
 const OutputKind kSound{.name = "a sound (WAV)", .matches = is_sound};
 const OutputKind kPng{.name = "a picture (PNG)", .matches = is_png};
 const OutputKind kSvg{.name = "a picture (SVG)", .matches = is_svg};
-const OutputKind kFilm{.name = "a film (MP4 or GIF)", .matches = is_film};
+const OutputKind kFilm{.name = "an animation (MP4 or GIF)", .matches = is_film};
 const OutputKind kMesh{.name = "a mesh (OFF)", .matches = is_mesh};
 const OutputKind kPageFile{.name = "a page file", .matches = is_page_file, .needs_file = true};
 const OutputKind kJson{.name = "JSON", .matches = is_json};

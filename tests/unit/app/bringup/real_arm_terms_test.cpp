@@ -31,7 +31,7 @@ TEST_F(RealArmTermsTest, ArmFileFollowsFromKindOrBoardModel) {
   EXPECT_EQ(file_for(plug(ArmKind::kHfabLine, "L1"), 2), "vintage_phantom");
   EXPECT_EQ(file_for(plug(ArmKind::kHfabLine, "L1"), 3), "woodenhaptics_teensy");
   const std::string nine = file_for(plug(ArmKind::kHfabLine, "L1"), 9);
-  EXPECT_TRUE(holds(nine, "answers as model 9") && holds(nine, "--device L1 --arm")) << nine;
+  EXPECT_TRUE(holds(nine, "reports model 9") && holds(nine, "--device L1 --arm")) << nine;
 }
 
 TEST_F(RealArmTermsTest, BoardWithoutModelIsRefusedWithAdvice) {
@@ -48,7 +48,7 @@ TEST_F(RealArmTermsTest, UnknownBoardIsNotAskedForItsModel) {
     write(arm.node, "");
     const auto found = scene::find_real_arm_file(arm);
     ASSERT_FALSE(found) << product;
-    EXPECT_TRUE(holds(found.error().message, "which may be anything")) << found.error().message;
+    EXPECT_TRUE(holds(found.error().message, "which may be any device")) << found.error().message;
     EXPECT_EQ(fs::file_size(arm.node), 0u) << "something was written to " << product;
   }
 }
@@ -255,7 +255,7 @@ TEST_F(RealArmTermsTest, SceneCannotRemoveTheEnergyStage) {
     const std::string text = all_of(*told);
     EXPECT_TRUE(holds(text, one.said)) << text;
     EXPECT_EQ(holds(text, "ball.yaml:5: "), one.said[0] != 0) << text;
-    EXPECT_TRUE(holds(text, "its arm, vintage_phantom, is what it is simulated with")) << text;
+    EXPECT_TRUE(holds(text, "its arm, vintage_phantom, is used for the simulation only")) << text;
   }
   // In simulation a scene may still omit the energy stage.
   auto simulated = scene::load_scene(file);

@@ -146,7 +146,7 @@ TEST_F(VendorLibraryTest, DoctorExplainsVendorLibraryAccess) {
   }
   const auto chosen = scene::choose_arm(*driver::find_arms(usb_.root()), "TT1");
   ASSERT_FALSE(chosen);
-  EXPECT_TRUE(holds(chosen.error().message, "`thimble doctor` says what to do"));
+  EXPECT_TRUE(holds(chosen.error().message, "`thimble doctor` prints what to do"));
   EXPECT_FALSE(holds(chosen.error().message, "70-thimble"));
 }
 

@@ -153,9 +153,10 @@ TEST_F(LogTest, UnwritableFileIsReportedOnce) {
     logger().warn("one");
     logger().warn("two");
   });
-  const std::size_t told = said.find("thimble: The log ends, for " + default_log_file().string());
+  const std::size_t told =
+      said.find("thimble: Logging has stopped, because " + default_log_file().string());
   ASSERT_NE(told, std::string::npos) << said;
-  EXPECT_EQ(said.find("The log ends", told + 20), std::string::npos) << said;
+  EXPECT_EQ(said.find("Logging has stopped", told + 20), std::string::npos) << said;
   EXPECT_NE(said.find("thimble: one\n"), std::string::npos);
   EXPECT_NE(said.find("thimble: two\n"), std::string::npos);
 }
@@ -175,9 +176,10 @@ TEST_F(LogTest, FullDiskEndsOnlyTheLog) {
   });
   setrlimit(RLIMIT_FSIZE, &before);
   signal(SIGXFSZ, signal_before);
-  EXPECT_TRUE(std::regex_match(said, std::regex("thimble: The log ends, for " + file.string() +
-                                                " cannot be written \\(.*\\)\\. .*\n"
-                                                "thimble: the last\n")))
+  EXPECT_TRUE(
+      std::regex_match(said, std::regex("thimble: Logging has stopped, because " + file.string() +
+                                        " cannot be written \\(.*\\)\\. .*\n"
+                                        "thimble: the last\n")))
       << said;
   EXPECT_GT(lines_of(file).size(), 10u);
 }
@@ -185,7 +187,7 @@ TEST_F(LogTest, FullDiskEndsOnlyTheLog) {
 TEST_F(LogTest, FileNamedByTheUserMustBeWritable) {
   const auto begun = begin_log({.file = "/dev/full"});
   ASSERT_FALSE(begun);
-  EXPECT_EQ(begun.error().message.rfind("/dev/full: the log cannot be written there (", 0), 0u)
+  EXPECT_EQ(begun.error().message.rfind("/dev/full: cannot write the log there (", 0), 0u)
       << begun.error().message;
   EXPECT_FALSE(begin_log({.file = folder_}));
 }
