@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/usage/help_text.h"
 #include "cli/usage/usage_error.h"
 #include "log/printed_text.h"
 #include "scene_keys.h"
@@ -33,9 +34,9 @@ int print_keys(const HelpOptions& options) {
   if (text.empty()) {
     std::vector<std::string> names;
     for (const scene::KeyNote& key : keys) names.push_back(key.key);
-    return complain(driver::Error{"No key of " + options.file + " files is called \"" +
-                                  options.key + "\"; `thimble help " + options.file +
-                                  "` lists all." + suggestion(options.key, names)},
+    return complain(driver::Error{"KEY: there is no key \"" + options.key + "\" in " +
+                                  options.file + " files. `thimble help " + options.file +
+                                  "` lists all keys." + suggestion(options.key, names)},
                     kExitBadInput);
   }
   scene::print_format("%s", text.c_str());
@@ -48,11 +49,12 @@ void add_help_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("help", "List the keys of scene and arm files, with units and limits");
   auto options = std::make_shared<HelpOptions>();
-  command->add_option("FILE", options->file, "Which kind of file: scene or arm")
+  command->add_option("FILE", options->file, "Kind of file")
       ->check(CLI::IsMember({"scene", "arm"}))
       ->capture_default_str();
-  command->add_option("KEY", options->key, "Only keys of this name");
-  command->add_flag("--page", options->page, "As a page of the guide (Markdown)");
+  command->add_option("KEY", options->key, "Print only keys of this name");
+  command->add_flag("--page", options->page, "Print a page of the guide (Markdown)");
+  add_example(*command, "thimble help scene stiffness");
   command->callback([options, &exit_code] { exit_code = print_keys(*options); });
 }
 
