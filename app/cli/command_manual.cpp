@@ -33,9 +33,9 @@ void print_option(const CLI::Option& option, bool is_positional) {
   if (const std::string value = value_text(option); !value.empty() && !is_positional) {
     scene::print_format(" \\fI%s\\fR", roff(value).c_str());
   }
-  const std::string limits = limits_text(option);
-  scene::print_format("\n%s%s\n", roff(option.get_description()).c_str(),
-                      limits.empty() ? "" : (" " + roff(limits)).c_str());
+  std::string about = option.get_description();
+  if (const std::string limits = limits_text(option); !limits.empty()) about += " " + limits;
+  scene::print_format("\n%s\n", roff(about).c_str());
 }
 
 /// Prints the arguments of a command, then its options by topic.
@@ -50,6 +50,17 @@ void print_options(const CLI::App& command) {
   }
 }
 
+/// Returns the example and the notes of a command: its footer without that of the program.
+std::string notes_of(const CLI::App& command) {
+  const CLI::App* program = &command;
+  while (program->get_parent() != nullptr) program = program->get_parent();
+  std::string notes = command.get_footer();
+  const std::string inherited = program->get_footer();
+  if (notes.ends_with(inherited)) notes.resize(notes.size() - inherited.size());
+  while (notes.ends_with('\n')) notes.pop_back();
+  return notes;
+}
+
 void print_commands(const CLI::App& above, const std::string& prefix) {
   for (const CLI::App* command : above.get_subcommands([](const CLI::App*) { return true; })) {
     // Internal commands have no group, option groups no name.
@@ -62,6 +73,9 @@ void print_commands(const CLI::App& above, const std::string& prefix) {
       continue;
     }
     print_options(*command);
+    if (const std::string notes = notes_of(*command); !notes.empty()) {
+      scene::print_format(".PP\n.nf\n%s\n.fi\n", roff(notes).c_str());
+    }
     print_commands(*command, name + " ");
   }
 }

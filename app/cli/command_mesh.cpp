@@ -302,13 +302,12 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
       ->needs("--repair");
   add_mesh_page_command(*command, exit_code);
   add_mesh_generate_command(*command, exit_code);
-  add_example(
-      *command, "thimble mesh scan.ply --repair scan.off",
-      "The exit code is 2 if the mesh cannot be touched.\n"
-      "--repair welds vertices within 1e-5 of the size of the mesh; removes triangles that\n"
-      "have no area or occur twice; closes seams; separates bodies that share an edge;\n"
-      "fills holes up to half of the area of a part; and orients triangles outwards.\n"
-      "--thicken requires --repair.");
+  add_example(*command, "thimble mesh scan.ply --repair scan.off",
+              "The exit code is 2 if the mesh cannot be touched.\n"
+              "--repair welds vertices within 1e-5 of the size of the mesh; removes triangles\n"
+              "that have no area or occur twice; closes seams; separates bodies that share an\n"
+              "edge; fills holes up to half of the area of a part; orients triangles outwards.\n"
+              "--thicken requires --repair.");
   // Otherwise a word that a sub-command rejects would be parsed as FILE without an error.
   command->parse_complete_callback([command, options] {
     if (!command->get_subcommands().empty() && !options->file.empty()) {

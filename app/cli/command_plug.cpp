@@ -269,8 +269,9 @@ constexpr const char* kPlugNotes =
     "--faults   One fault per line: KIND [in|out] [after=FRAMES] [for=FRAMES]\n"
     "           [rate=CHANCE]. KIND: stall, short, long, torn, stale, duplicate,\n"
     "           silence, bit_errors, unplug, lost.\n"
-    "--control  The pipe takes such lines, `heal`, `hand X Y Z` (m, along the axes of\n"
-    "           the base, from the start of the hand), `hand off`, `hand on`, `mass KG`.\n"
+    "--control  The pipe takes such lines, `heal`, `hand X Y Z` (m, along the axes\n"
+    "           of the base, from the start of the hand), `hand off`, `hand on` and\n"
+    "           `mass KG`.\n"
     "--trace    The true state of the arm, one line per USB frame with packets.";
 
 }  // namespace

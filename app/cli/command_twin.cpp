@@ -93,14 +93,13 @@ void add_twin_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.0, 100.0));
   sub->add_option("--output", command->output, "Write figures.json and pictures to this folder")
       ->option_text("DIR");
-  add_example(
-      *sub, "thimble twin touch.h5 --arm my_arm.yaml",
-      "The recorded forces drive the simulated arm; both motions are compared.\n"
-      "FILE      From `thimble identify --record`, or a part (--from, --until) of one from\n"
-      "          `thimble run SCENE --record`.\n"
-      "--window  Each segment begins in the recorded state.\n"
-      "--fit-least  The exit code is 5 if the fit of an axis is smaller.\n"
-      "--output  The pictures show motion, error and spectrum.");
+  add_example(*sub, "thimble twin touch.h5 --arm my_arm.yaml",
+              "The recorded forces drive the simulated arm; both motions are compared.\n"
+              "FILE      From `thimble identify --record`, or a part (--from, --until) of a\n"
+              "          recording from `thimble run SCENE --record`.\n"
+              "--window  Each segment begins in the recorded state.\n"
+              "--fit-least  The exit code is 5 if the fit of an axis is smaller.\n"
+              "--output  The pictures show motion, error and spectrum.");
   sub->callback([command, &exit_code] { exit_code = compare(*command); });
 }
 

@@ -306,8 +306,8 @@ constexpr const char* kRunNotes =
     "--sound, --rumble need the window.\n"
     "--quality  Points on the diagrams of `thimble study accuracy`. auto: the\n"
     "           cheapest point without a perceptible error; with --budget the most\n"
-    "           accurate one for all objects together. Times are those of the machine\n"
-    "           of the stored diagrams. The choices are printed.";
+    "           accurate one for all objects together, on the machine of the stored\n"
+    "           diagrams. The choices are printed.";
 
 }  // namespace
 
