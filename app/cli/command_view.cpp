@@ -124,7 +124,7 @@ driver::Result<void> ask_once(session::SharedReader& reader, const ViewOptions& 
   if (auto asked = ask_course(reader, options); !asked) return asked;
   const bool taken = (options.record.empty() || reader.ask_record(options.record)) &&
                      (!options.record_stop || reader.ask_record_stop());
-  if (!taken) return driver::Error{"Another viewer is sending a request. Try again."};
+  if (!taken) return driver::Error{"Another viewer is sending a request; try again."};
   if (options.stop) reader.ask_stop();
   return {};
 }

@@ -61,7 +61,7 @@ def main():
     mean = sum(apart) / len(apart)
     off = sum(one > OFF for one in apart) / len(apart)
     near = mean <= MEAN_MOST and off <= OFF_SHARE_MOST
-    print(f"{'the same' if near else 'another picture'}: mean difference {mean:.2f} of 255, {100 * off:.2f} % of the pixels differ")
+    print(f"{'the same' if near else 'another picture'}: {mean:.2f} of 255 apart on the whole, {100 * off:.2f} % of it off")
     return 0 if near else 1
 
 

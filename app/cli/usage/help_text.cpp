@@ -166,7 +166,7 @@ std::string HelpFormatter::make_expanded(const CLI::App* sub) const {
 std::string HelpFormatter::make_subcommand(const CLI::App* sub) const {
   std::string line = "  " + sub->get_name();
   line.resize(std::max(line.size() + 1, kCommandColumn), ' ');
-  return line + sub->get_description() + '\n';
+  return line + broken_at_blanks(sub->get_description(), kCommandColumn) + '\n';
 }
 
 std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positional) const {
