@@ -133,8 +133,9 @@ void add_accuracy_options(CLI::App& command, int& exit_code) {
                    "Compare times only, without instruction counts");
   command.add_flag("--resume", options->resume, "Continue an interrupted run of the same options");
   add_example(command, "thimble study accuracy --axis tessellation velocity",
-              "--table measures the points of app/scene/src/quality/quality_table.inc, from which\n"
-              "`thimble run --quality auto` chooses. Counting instructions takes minutes.");
+              "--table writes the points from which `thimble run --quality auto` chooses, in the\n"
+              "form of app/scene/src/quality/quality_table.inc. Counting instructions takes\n"
+              "minutes.");
   command.callback([options, &exit_code] { exit_code = run_accuracy(*options); });
 }
 
