@@ -34,13 +34,13 @@ struct ChosenArm {
                                              ///< calibration, if wanted.
   std::filesystem::path path;                ///< Path of `file`.
   std::vector<std::string> told;             ///< Which file a real arm uses, and why.
-  std::optional<driver::FoundArm> real_arm;  ///< empty: the simulated arm
+  std::optional<driver::FoundArm> real_arm;  ///< The real arm; none if simulated.
   std::string name;                          ///< FoundArm::name, or "sim"
 };
 
 /// Finds the arm that a choice selects and reads its file. A plugged arm comes first, with its
 /// calibration unless it is chosen `for_calibration`; otherwise the simulated arm of --arm is used.
-/// The error says what to do. Real-time: never from the servo thread.
+/// The error contains the remedy. Real-time: never from the servo thread.
 driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration);
 
 /// Fails if the arm is real and the loop gets no real-time priority, as `run` does, before an arm

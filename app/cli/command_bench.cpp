@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/file_options.h"
+#include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
 #include "report/figure_output.h"
@@ -47,7 +48,7 @@ int run_bench(const BenchOptions& options) {
   }
   if (!advice.empty()) scene::print_format("%s\n", advice.c_str());
   scene::print_format(
-      "The simulated arm is in these times; a real one has its wire in its place.\n\n%s",
+      "These times include the simulated arm. A real arm has its connection instead.\n\n%s",
       report::figure_table(figures).c_str());
   if (options.out.empty()) return kExitDone;
   std::error_code status;
@@ -60,20 +61,19 @@ int run_bench(const BenchOptions& options) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("bench", "Is this machine good enough for a scene at 1, 4 and 8 kHz?");
+  CLI::App* command = app.add_subcommand("bench", "Measure loop rates on this machine");
   auto options = std::make_shared<BenchOptions>();
   add_scene_option(*command, options->scene)->capture_default_str();
-  command->add_option("--rate", options->rates, "Ticks per second to try, Hz")
+  command->add_option("--rate", options->rates, "Rates to measure, Hz")
       ->check(CLI::Range(100, 50'000))
       ->capture_default_str();
-  command->add_option("--seconds", options->seconds, "How long to touch at each rate, s")
+  command->add_option("--seconds", options->seconds, "Duration at each rate, s")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
-  add_quality_option(
-      *command, options->quality,
-      "draft, normal, reference or auto, as in `thimble run`; at the rates of --rate");
-  command->add_option("--out", options->out, "Folder for figures.json");
+  add_quality_option(*command, options->quality, "Accuracy preset, as in `thimble run`");
+  command->add_option("--out", options->out, "Write figures.json to this folder")
+      ->option_text("DIR");
+  add_example(*command, "thimble bench elephant --rate 1000 8000");
   command->callback([options, &exit_code] { exit_code = run_bench(*options); });
 }
 

@@ -12,6 +12,7 @@
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/usage/help_text.h"
 #include "enter_key.h"
 #include "log/logger.h"
 #include "log/printed_text.h"
@@ -53,7 +54,8 @@ int wait_for_word() {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   if (key == session::EnterKey::kPressed) return kExitDone;
-  return complain({"Nobody is at the terminal, so nothing was done."}, kExitBadInput);
+  return complain({"Standard input is closed, so nothing was done. Run it at a terminal."},
+                  kExitBadInput);
 }
 
 /// Prints the result of the library's calibration.
@@ -79,9 +81,8 @@ int let_find_zero(const std::string& name) {
   const auto library = driver::dhd::library();
   if (!library) return complain(library.error(), kExitNoDevice);
   scene::print_format(
-      "The arm will MOVE BY ITSELF until it has found its zero. Clear its workspace, let it go, "
-      "and "
-      "press Enter.\n");
+      "The arm will MOVE BY ITSELF until it has found its zero. Clear its workspace, let go of it, "
+      "and press Enter.\n");
   if (const int word = wait_for_word(); word != kExitDone) return word;
   return tell_calibrated(driver::dhd::find_zero(*library), name);
 }
@@ -99,8 +100,8 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
   if (row != nullptr && row->has_own_link()) {
     return complain(
         {"The arm " + chosen->name + " (" + chosen->file.name +
-         ") is calibrated by its vendor's own software, and Thimble takes its positions "
-         "as they come. Calibrate it there, then check it: thimble feel-check --device " +
+         ") is calibrated by the vendor's software; Thimble uses its positions unchanged. "
+         "Calibrate it there, then check it: thimble feel-check --device " +
          chosen->name},
         kExitBadInput);
   }
@@ -116,8 +117,9 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
   if (!bench) return complain(bench.error(), kExitNoDevice);
 
   constexpr std::array<const char*, 4> kAsks = {
-      "Put the arm into its home pose.", "From there, move the grip about 5 cm towards you.",
-      "Back home, then about 5 cm to your right.", "Back home, then about 5 cm up."};
+      "Put the arm into its home pose.", "Move the grip about 5 cm towards you.",
+      "Return to the home pose, then move about 5 cm to your right.",
+      "Return to the home pose, then move about 5 cm up."};
   constexpr std::array<double, 4> kSimulatedTimes = {1, 3.5, 7.5, 11.5};  // s
   std::array<driver::ArmReading, 4> readings;
   for (std::size_t i = 0; i < kAsks.size(); ++i) {
@@ -133,7 +135,7 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
       return complain({std::string(driver::describe((*bench)->device().fault()))}, kExitFault);
     }
     if (key == session::EnterKey::kClosed)
-      return complain({"Nobody is at the terminal."}, kExitBadInput);
+      return complain({"Standard input is closed. Run it at a terminal."}, kExitBadInput);
     readings[i].counts = (*bench)->device().state().counts;
   }
   const driver::ArmKind kind = chosen->real_arm ? chosen->real_arm->kind : chosen->file.protocol;
@@ -149,11 +151,11 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
   if (auto saved = scene::save_calibration(chosen->name, *found); !saved) {
     return complain(saved.error(), kExitTrouble);
   }
-  scene::logger().info("{} is calibrated: home_counts {} {} {}, kept in {}.", chosen->name,
+  scene::logger().info("{} is calibrated: home_counts {} {} {}, saved in {}.", chosen->name,
                        found->home_counts[0], found->home_counts[1], found->home_counts[2],
                        scene::calibration_file(chosen->name).string());
   scene::print_format(
-      "Kept in %s, with the arm file %s. Check it: thimble feel-check --device %s\n",
+      "Saved in %s, for the arm file %s. Check it: thimble feel-check --device %s\n",
       scene::calibration_file(chosen->name).c_str(), found->arm_file.c_str(), chosen->name.c_str());
   return kExitDone;
 }
@@ -162,11 +164,12 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
 
 void add_calibrate_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
-      app.add_subcommand("calibrate", "Find an arm's home pose and the signs of its encoders");
+      app.add_subcommand("calibrate", "Find the home pose of an arm and the signs of its encoders");
   auto choice = std::make_shared<ArmChoice>();
   auto dry_run = std::make_shared<bool>(false);
   choice->add_options(*command);
-  command->add_flag("--dry-run", *dry_run, "Show what was found, keep nothing");
+  command->add_flag("--dry-run", *dry_run, "Print the result without saving it");
+  add_example(*command, "thimble calibrate --device auto");
   command->callback([choice, dry_run, &exit_code] { exit_code = calibrate(*choice, *dry_run); });
 }
 

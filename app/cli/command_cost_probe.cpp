@@ -48,7 +48,8 @@ int probe(const ProbeOptions& options) {
     scene::print_format("%.17g\n", sum);
     return kExitDone;
   }
-  return complain({"cost-probe knows no \"" + options.subject + "\"."}, kExitBadInput);
+  return complain({"SUBJECT: cost-probe has no subject \"" + options.subject + "\"."},
+                  kExitBadInput);
 }
 
 }  // namespace

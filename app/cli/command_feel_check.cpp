@@ -12,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/prompts/yes_question.h"
+#include "cli/usage/help_text.h"
 #include "enter_key.h"
 #include "log/logger.h"
 #include "log/printed_text.h"
@@ -38,7 +39,7 @@ driver::Result<void> keep_result(const ChosenArm& chosen, const std::string& fir
   const scene::RealArmFile file{.path = chosen.path, .file = chosen.file, .why = {}, .told = {}};
   auto kept = scene::keep_passed(scene::describe_checked(*chosen.real_arm, file, firmware));
   if (kept) {
-    scene::print_format("Kept in %s: `thimble run` gives this arm its whole force from now on.\n",
+    scene::print_format("Saved in %s: `thimble run` now allows the full force of this arm.\n",
                         scene::feel_check_file(chosen.name).c_str());
   }
   return kept;
@@ -68,7 +69,8 @@ int check_arm(const ArmChoice& choice, double listen) {
   const bool person = !(*bench)->simulated();
   if (person) {
     scene::print_format(
-        "No force above %.1f N. Keep the arm's switch at hand; Ctrl-C ends the check.\n",
+        "The force is at most %.1f N. Keep the power switch within reach; Ctrl-C stops the "
+        "check.\n",
         scene::kFeelCheckForceMax);
   }
   const bringup::Prompt prompt = [&](const std::string& what) {
@@ -86,7 +88,8 @@ int check_arm(const ArmChoice& choice, double listen) {
     if (person) return says_yes(what, stop);
     constexpr double kFelt = 0.1;  // N
     const bool stopped = (*bench)->true_force() < kFelt;
-    scene::print_format("%s The simulated hand says %s.\n", what.c_str(), stopped ? "yes" : "no");
+    scene::print_format("%s The simulated hand answers %s.\n", what.c_str(),
+                        stopped ? "yes" : "no");
     return stopped;
   };
   bool all = true;
@@ -100,7 +103,7 @@ int check_arm(const ArmChoice& choice, double listen) {
   const bool passed = all && results.size() == bringup::kFeelChecks;
   scene::logger().info("The feel check of {} was {}.", chosen->name,
                        passed ? "passed"
-                       : all  ? "left"
+                       : all  ? "cancelled"
                               : "failed");
   // A check that was left early changes nothing.
   if (chosen->real_arm && (passed || !all)) {
@@ -119,13 +122,14 @@ int check_arm(const ArmChoice& choice, double listen) {
 
 void add_feel_check_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "feel-check", "Check an arm by hand: encoders, directions, forces, watchdog");
+      "feel-check", "Check encoders, directions, forces and watchdog of an arm by hand");
   auto choice = std::make_shared<ArmChoice>();
   auto listen = std::make_shared<double>(0);
   choice->add_options(*command);
   choice->add_real_time_option(*command);
-  command->add_option("--listen", *listen, "Only read for so many seconds, with zero force")
+  command->add_option("--listen", *listen, "Only read the arm for N seconds, with zero force")
       ->check(CLI::Range(0.1, 3600.0));
+  add_example(*command, "thimble feel-check --device auto");
   command->callback([choice, listen, &exit_code] { exit_code = check_arm(*choice, *listen); });
 }
 

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/usage/help_text.h"
 #include "cli/usage/usage_error.h"
 #include "keys/key_schema.h"
 #include "log/printed_text.h"
@@ -32,9 +33,9 @@ int print_keys(const HelpOptions& options) {
   if (text.empty()) {
     std::vector<std::string> names;
     for (const scene::KeyNote& key : *keys) names.push_back(key.key);
-    return complain(driver::Error{"No key of " + options.file + " files is called \"" +
-                                  options.key + "\"; `thimble help " + options.file +
-                                  "` lists all." + suggestion(options.key, names)},
+    return complain(driver::Error{"KEY: there is no key \"" + options.key + "\" in " +
+                                  options.file + " files. `thimble help " + options.file +
+                                  "` lists all keys." + suggestion(options.key, names)},
                     kExitBadInput);
   }
   scene::print_format("%s", text.c_str());
@@ -67,6 +68,7 @@ void add_help_command(CLI::App& app, int& exit_code) {
   command->add_option("KEY", options->key,
                       "Print only keys of this name; with schema: scene or arm");
   command->add_flag("--page", options->page, "Print a page of the guide (Markdown)");
+  add_example(*command, "thimble help scene stiffness");
   command->callback([options, &exit_code] {
     exit_code = options->file == "schema" ? print_schema(*options) : print_keys(*options);
   });

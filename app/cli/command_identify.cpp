@@ -19,6 +19,7 @@
 #include "cli/complain.h"
 #include "cli/prompts/key_stop.h"
 #include "cli/prompts/yes_question.h"
+#include "cli/usage/help_text.h"
 #include "enter_key.h"
 #include "identified/identify_page.h"
 #include "log/logger.h"
@@ -61,15 +62,14 @@ std::string today() {
 
 /// Returns how the user stops the motion.
 const char* how_to_stop(bool terminal) {
-  return terminal ? "any key ends it" : "Ctrl-C ends it";
+  return terminal ? "press any key to stop" : "press Ctrl-C to stop";
 }
 
 /// Returns the sentence that announces the motion of the tip.
 std::string led_text(const bringup::IdentifyOptions& options) {
   if (options.places == 0) return "";
-  return fmt::format(
-      ", and then go slowly to {} places of its workspace and shake there for {:g} s each",
-      options.places, options.place_seconds);
+  return fmt::format(", then move slowly to {} poses of its workspace and shake for {:g} s at each",
+                     options.places, options.place_seconds);
 }
 
 /// Opens a real arm and asks for what the motion needs. The arm is idle meanwhile.
@@ -82,14 +82,14 @@ driver::Result<std::unique_ptr<bringup::BenchArm>> open_real(const ChosenArm& ch
   if (!bench) return bench;
   if (loaded) {
     scene::print_format(
-        "Fix %g kg to the tip so that it cannot swing, in the middle of the workspace, and hold it "
-        "from below; let go once you feel that it is carried. Press Enter to begin.\n",
+        "Fix %g kg rigidly to the tip, in the middle of the workspace, and support it from below. "
+        "Let go when you feel that the arm carries it. Press Enter to begin.\n",
         command.options.known_mass);
   } else {
     scene::print_format(
-        "Put the tip into the middle of the workspace, so that it stays there, and take your hand "
-        "off. It will shake by some millimetres with at most %g N for %g s%s; %s. Press Enter to "
-        "begin.\n",
+        "Put the tip into the middle of the workspace so that it stays there, and remove your "
+        "hand. The tip will shake by a few millimetres with at most %g N for %g s%s; %s. Press "
+        "Enter to begin.\n",
         command.options.force_most, command.options.seconds, led_text(command.options).c_str(),
         how_to_stop(has_terminal()));
   }
@@ -99,7 +99,7 @@ driver::Result<std::unique_ptr<bringup::BenchArm>> open_real(const ChosenArm& ch
     return (key = session::look_for_enter()) != session::EnterKey::kNothing;
   };
   if (!(*bench)->hold(done, stop) || key != session::EnterKey::kPressed) {
-    return driver::Error{"It was left before it began; nothing was kept."};
+    return driver::Error{"Cancelled before the motion began; nothing was saved."};
   }
   return bench;
 }
@@ -141,9 +141,9 @@ int keep(const IdentifyCommand& command, const ChosenArm& chosen, const bringup:
     return done;
   };
   if (bad && !command.write_bad_fit) return left(".");
-  if (!writes) return left(": name the new file by --output, or answer by --yes.");
+  if (!writes) return left(". Name the new file with --output, or confirm with --yes.");
   if (!command.yes && has_terminal()) {
-    const std::string question = (bad ? "The fit is bad. Write it all the same, marked BAD FIT, to "
+    const std::string question = (bad ? "The fit is bad. Write it anyway, marked BAD FIT, to "
                                       : "Write these constants to the new arm file ") +
                                  command.output + "?";
     if (!says_yes(question, stop)) return stop.load() ? kExitInterrupted : left(".");
@@ -154,7 +154,7 @@ int keep(const IdentifyCommand& command, const ChosenArm& chosen, const bringup:
                                                  {.date = today(), .arm = chosen.name});
   if (!written) return complain(written.error(), kExitTrouble);
   scene::print_format("Written to %s%s.\n", command.output.c_str(),
-                      bad ? ", each mark with BAD FIT" : "");
+                      bad ? ", with each value marked BAD FIT" : "");
   return done;
 }
 
@@ -167,8 +167,8 @@ int identify_arm(IdentifyCommand command) {
     return complain(allowed.error(), kExitBadInput);
   }
   if (chosen->real_arm && !checked(*chosen, command.choice.firmware)) {
-    return complain({"Identifying pushes the arm by itself, and this arm, with this arm file, has "
-                     "not passed its feel check. Run `thimble feel-check` first."},
+    return complain({"identify moves the arm by itself, and this arm has not passed the feel check "
+                     "with this arm file. Run `thimble feel-check` first."},
                     kExitBadInput);
   }
   if (auto right = bringup::check_forces(chosen->file, command.options); !right) {
@@ -205,7 +205,7 @@ int identify_arm(IdentifyCommand command) {
     if (!bench) return bench;
     keys.emplace();
     scene::print_format("The tip %s; %s.\n",
-                        loaded ? "with the known mass is shaken" : "is shaken by small forces",
+                        loaded ? "shakes with the known mass" : "shakes by small forces",
                         how_to_stop(keys->listens()));
     std::fflush(stdout);
     return bench;
@@ -220,7 +220,7 @@ int identify_arm(IdentifyCommand command) {
   const bool by_key = keys && keys->pressed();
   keys.reset();
   if (stop.load()) {
-    scene::print_format("%s; nothing was kept.\n", by_key ? "Stopped by a key" : "Stopped");
+    scene::print_format("%s; nothing was saved.\n", by_key ? "Stopped by a key" : "Stopped");
     return kExitInterrupted;
   }
   if (!ticks.empty()) {
@@ -248,7 +248,7 @@ int identify_arm(IdentifyCommand command) {
     scene::print_format("Report in %s/index.html.\n", command.report.c_str());
   }
   scene::logger().info("The arm {} was identified{}.", chosen->name,
-                       found->against.empty() ? "" : ", and its fit is bad");
+                       found->against.empty() ? "" : ", with a bad fit");
   return keep(command, *chosen, *found, writes, stop);
 }
 
@@ -256,43 +256,55 @@ int identify_arm(IdentifyCommand command) {
 
 void add_identify_command(CLI::App& app, int& exit_code) {
   CLI::App* sub = app.add_subcommand(
-      "identify",
-      "Measure an arm's mass, links, friction, gains, delay and cables by small forces");
+      "identify", "Measure the mass, friction, gains, delay and cables of an arm");
   auto command = std::make_shared<IdentifyCommand>();
   command->options.places = 7;
   command->choice.add_options(*sub);
   command->choice.add_real_time_option(*sub);
-  sub->add_option(
-         "--known-mass", command->options.known_mass,
-         "Mass that you fix to the tip for a second motion, kg: without it only the ratios "
-         "of masses and forces can be seen")
-      ->check(CLI::Range(0.0, 0.06));
-  sub->add_option("--seconds", command->options.seconds, "Of each motion")
+  constexpr const char* kMotion = "Motion";
+  sub->add_option("--known-mass", command->options.known_mass,
+                  "Mass that you fix to the tip for a second motion, kg")
+      ->check(CLI::Range(0.0, 0.06))
+      ->group(kMotion);
+  sub->add_option("--seconds", command->options.seconds, "Duration of each motion, s")
       ->check(CLI::Range(10.0, 600.0))
-      ->capture_default_str();
-  sub->add_option("--places", command->options.places,
-                  "Places of the workspace that the tip is led to afterwards, where the inertia of "
-                  "the links shows; 0: none")
+      ->capture_default_str()
+      ->group(kMotion);
+  sub->add_option("--places", command->options.places, "Poses for the link inertia; 0: none")
       ->check(CLI::Range(3, 9) | CLI::IsMember({0}))
-      ->capture_default_str();
-  sub->add_option("--force-most", command->options.force_most,
-                  "Largest force, N; no more than gate.force_max of the arm file")
+      ->capture_default_str()
+      ->group(kMotion);
+  sub->add_option("--force-most", command->options.force_most, "Largest force, N")
       ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  sub->add_option("--output", command->output,
-                  "New arm file to write; left out: NAME_identified.yaml in this folder");
-  sub->add_flag("--yes", command->yes,
-                "Write the new file without asking; without it you are asked at a terminal, and "
-                "elsewhere --output is your word");
+      ->capture_default_str()
+      ->group(kMotion);
+  constexpr const char* kOutput = "Output";
+  sub->add_option("--output", command->output, "New arm file (default: NAME_identified.yaml here)")
+      ->option_text("FILE")
+      ->group(kOutput);
+  sub->add_flag("--yes", command->yes, "Write the arm file without asking")->group(kOutput);
   sub->add_flag("--write-bad-fit", command->write_bad_fit,
-                "Write the file of a bad fit too, with BAD FIT in each mark");
+                "Also write a bad fit, with each value marked BAD FIT")
+      ->group(kOutput);
   CLI::Option* record =
-      sub->add_option("--record", command->record,
-                      "Recording of the motion with the bare tip to write, for `thimble twin`");
+      sub->add_option("--record", command->record, "Record the motion of the bare tip (HDF5)")
+          ->option_text("FILE")
+          ->group(kOutput);
   sub->add_flag("--force", command->force, "Let --record replace an existing recording")
-      ->needs(record);
-  sub->add_option("--report", command->report,
-                  "Folder for a page with plots, constants and what was not identified, and why");
+      ->needs(record)
+      ->group(kOutput);
+  sub->add_option("--report", command->report, "Write a page with plots, constants and gaps")
+      ->option_text("DIR")
+      ->group(kOutput);
+  add_example(*sub, "thimble identify --device auto --output my_arm.yaml",
+              "The arm moves by itself, by small forces.\n"
+              "--known-mass  Without it, only ratios of masses and forces are identified.\n"
+              "--places      Number of poses in the workspace that the tip visits afterwards.\n"
+              "--force-most  At most gate.force_max of the arm file.\n"
+              "--yes         Without it you are asked at a terminal. Without a terminal, the\n"
+              "              file is written only if --output is given.\n"
+              "--record      Use the recording with `thimble twin`.\n"
+              "--report      The page also lists what was not identified, and why.");
   sub->callback([command, &exit_code] { exit_code = identify_arm(*command); });
 }
 

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/complain.h"
+#include "cli/usage/help_text.h"
 #include "compact_mesh/packed_surface.h"
 #include "disk_paging/page_file.h"
 #include "log/printed_text.h"
@@ -47,10 +48,11 @@ int page_mesh(const PageOptions& options) {
 
 void add_mesh_page_command(CLI::App& mesh_command, int& exit_code) {
   CLI::App* command = mesh_command.add_subcommand(
-      "page", "Cut a mesh into volumes on disk, of which few are in memory while touching");
+      "page", "Convert a mesh to a page file, which is loaded from disk in parts");
   auto options = std::make_shared<PageOptions>();
   command->add_option("IN", options->in, std::string("Mesh: ") + render::kMeshEndings)->required();
   command->add_option("OUT", options->out, "Page file to write")->required();
+  add_example(*command, "thimble mesh page scan.ply scan.pages");
   command->callback([options, &exit_code] { exit_code = page_mesh(*options); });
 }
 

@@ -18,6 +18,7 @@
 #include "cli/complain.h"
 #include "cli/file_options.h"
 #include "cli/plug_orders.h"
+#include "cli/usage/help_text.h"
 #include "cli/usage/usage_error.h"
 #include "gravity_terms.h"
 #include "log/logger.h"
@@ -66,7 +67,7 @@ class KernelAttachment {
     thread_ = std::thread([this] {
       const auto attached = usb::attach_to_kernel(port_, bus_id_);
       if (attached) {
-        scene::print_format("Attached to this kernel, port %d of its virtual USB host.\n",
+        scene::print_format("Attached to this kernel: port %d of the virtual USB host.\n",
                             *attached);
       } else {
         scene::logger().error("{}", attached.error().message);
@@ -139,16 +140,16 @@ usb::HandMotion motion_of(const std::string& name) {
 }
 
 void say_what_to_do(const usb::UsbipServer& server, const PlugOptions& options) {
-  scene::print_format("The simulated arm '%s' waits on port %u as USB device %s.\n",
+  scene::print_format("The simulated arm '%s' is available on port %u as USB device %s.\n",
                       options.arm.c_str(), static_cast<unsigned>(server.port()),
                       server.bus_id().c_str());
   if (!options.attach) {
     scene::print_format(
-        "Plug it in, as root: modprobe vhci-hcd; usbip --tcp-port %u attach -r 127.0.0.1 "
+        "To plug it in, run as root: modprobe vhci-hcd; usbip --tcp-port %u attach -r 127.0.0.1 "
         "-b %s\n",
         static_cast<unsigned>(server.port()), server.bus_id().c_str());
   }
-  scene::print_format("Ctrl-C unplugs it.\n");
+  scene::print_format("Press Ctrl-C to unplug it.\n");
   std::fflush(stdout);
 }
 
@@ -156,7 +157,7 @@ void say_what_to_do(const usb::UsbipServer& server, const PlugOptions& options) 
 driver::Result<scene::ArmFile> simulated_file(const std::string& path) {
   auto file = scene::load_arm(path);
   if (file && !file->can_simulate) {
-    return driver::Error{"The arm file " + path +
+    return driver::Error{"--arm: " + path +
                          " has no section 'simulation', so the arm cannot be simulated."};
   }
   return file;
@@ -192,7 +193,7 @@ int plug(const PlugOptions& options) {
   OrderPipe control;
   if (!options.control.empty() && !control.open(options.control)) {
     return complain(
-        {"cannot make the control pipe " + options.control + "; does it exist already?"},
+        {"--control: cannot create the pipe " + options.control + ". Remove an existing file."},
         kExitBadInput);
   }
   std::optional<TruthTrace> trace;
@@ -224,8 +225,8 @@ int plug(const PlugOptions& options) {
   });
   const usb::UsbipCounters counters = (*server)->counters();
   scene::print_format(
-      "Unplugged. Transfers: %llu asked, %llu done, %llu stalled, %llu too long, %llu taken "
-      "back. Frames left out: %llu.\n",
+      "Unplugged. Transfers: %llu submitted, %llu completed, %llu stalled, %llu too long, %llu "
+      "cancelled. Skipped frames: %llu.\n",
       static_cast<unsigned long long>(counters.submitted),
       static_cast<unsigned long long>(counters.completed),
       static_cast<unsigned long long>(counters.stalled),
@@ -235,7 +236,7 @@ int plug(const PlugOptions& options) {
   for (std::size_t kind = 0; kind < usb::kFaultKinds; ++kind) {
     const auto fault = static_cast<usb::FaultKind>(kind);
     if (device.hits(fault) == 0) continue;
-    scene::print_format("Fault %s hit %llu packets.\n", std::string(usb::name(fault)).c_str(),
+    scene::print_format("Fault %s affected %llu packets.\n", std::string(usb::name(fault)).c_str(),
                         static_cast<unsigned long long>(device.hits(fault)));
   }
   return attachment.failed() ? kExitTrouble : kExitDone;
@@ -251,53 +252,74 @@ std::string check_arm_name(const std::string& name) {
   return "expected one of " + known + "; found \"" + name + "\"." + suggestion(name, names);
 }
 
+/// Returns the names and descriptions of the arms, one per line.
 std::string arm_list() {
-  std::string list = "Which arm:";
+  std::string list = "Arms:\n";
   for (const usb::ShelfEntry& entry : usb::kShelf) {
-    list += "\n  " + std::string(entry.name) + ": " + std::string(entry.what);
+    list += std::string(entry.name) + ": " + std::string(entry.what) + "\n";
   }
   return list;
 }
 
+constexpr const char* kPlugNotes =
+    "--hand     none, rest: keep the home pose; tap: up and down; stroke: a circle.\n"
+    "--arm      Replaces torque constants, tip, weight, drive train, hand and wiring\n"
+    "           of the built-in arm. A driver does not have to know the file.\n"
+    "--serial   Default: that of the board (all mbed boards: 0123456789).\n"
+    "--faults   One fault per line: KIND [in|out] [after=FRAMES] [for=FRAMES]\n"
+    "           [rate=CHANCE]. KIND: stall, short, long, torn, stale, duplicate,\n"
+    "           silence, bit_errors, unplug, lost.\n"
+    "--control  The pipe takes such lines, `heal`, `hand X Y Z` (m, along the axes\n"
+    "           of the base, from the start of the hand), `hand off`, `hand on` and\n"
+    "           `mass KG`.\n"
+    "--trace    The true state of the arm, one line per USB frame with packets.";
+
 }  // namespace
 
 void add_plug_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
-      "plug", "Export a simulated arm as a USB device that this kernel can plug in (USB/IP)");
+  CLI::App* command = app.add_subcommand("plug", "Export a simulated arm as a USB device (USB/IP)");
   auto options = std::make_shared<PlugOptions>();
-  command->add_option("ARM", options->arm, arm_list())
+  command->add_option("ARM", options->arm, "Name of the arm, see below")
       ->required()
       ->check(CLI::Validator(check_arm_name, ""));
-  command->add_option("--port", options->port, "TCP port; 0 takes any free one")
-      ->capture_default_str();
-  command
-      ->add_option("--listen", options->address,
-                   "Address to listen on; 0.0.0.0 lets other machines plug the arm in")
-      ->capture_default_str();
-  command->add_flag("--attach", options->attach,
-                    "Plug it into this kernel too (root; module vhci-hcd)");
-  command->add_option("--hand", options->motion, "What the simulated hand does")
+  constexpr const char* kConnection = "Connection";
+  command->add_flag("--attach", options->attach, "Attach it to this kernel (root, module vhci-hcd)")
+      ->group(kConnection);
+  command->add_option("--port", options->port, "TCP port; 0: any free port")
+      ->capture_default_str()
+      ->group(kConnection);
+  command->add_option("--listen", options->address, "Address; 0.0.0.0 allows other machines")
+      ->option_text("ADDRESS")
+      ->capture_default_str()
+      ->group(kConnection);
+  constexpr const char* kArm = "Simulated arm";
+  add_arm_option(*command, options->arm_file, "Arm file whose constants are used")->group(kArm);
+  command->add_option("--hand", options->motion, "Motion of the simulated hand")
       ->check(CLI::IsMember({"none", "rest", "tap", "stroke"}))
-      ->capture_default_str();
-  add_arm_option(*command, options->arm_file,
-                 "Arm file of its constants, in place of the shelf's own: torque constants, tip, "
-                 "weight, drive train, hand, wiring; a driver need not know it");
-  command->add_option("--serial", options->serial,
-                      "Serial number; without it that of the board (all mbed boards: 0123456789)");
-  command->add_option("--seed", options->seed, "Seed of everything random")->capture_default_str();
-  command->add_option("--firmware", options->firmware,
-                      "The only firmware that a simulated Falcon runs; without it any will do");
-  command->add_option("--faults", options->faults,
-                      "File of faults, one a line: KIND [in|out] [after=FRAMES] [for=FRAMES] "
-                      "[rate=CHANCE];\nKIND: stall, short, long, torn, stale, duplicate, silence, "
-                      "bit_errors, unplug, lost");
-  command->add_option(
-      "--control", options->control,
-      "Make a named pipe that takes such lines, and 'heal', while it runs; and "
-      "'hand X Y Z' (m\nalong the base's axes from where the hand began), 'hand off', "
-      "'hand on'");
-  command->add_option("--trace", options->trace,
-                      "Write what was true of the arm, a line for each frame with packets");
+      ->capture_default_str()
+      ->group(kArm);
+  command->add_option("--serial", options->serial, "Serial number of the USB device")
+      ->option_text("TEXT")
+      ->group(kArm);
+  command->add_option("--seed", options->seed, "Seed of all random numbers")
+      ->capture_default_str()
+      ->group(kArm);
+  command
+      ->add_option("--firmware", options->firmware,
+                   "Only firmware that a Falcon accepts (default: any)")
+      ->option_text("FILE")
+      ->group(kArm);
+  constexpr const char* kTests = "Tests";
+  command->add_option("--faults", options->faults, "Script of USB faults")
+      ->option_text("FILE")
+      ->group(kTests);
+  command->add_option("--control", options->control, "Create a named pipe for commands")
+      ->option_text("PIPE")
+      ->group(kTests);
+  command->add_option("--trace", options->trace, "Write the true state of the arm")
+      ->option_text("FILE")
+      ->group(kTests);
+  add_example(*command, "thimble plug polhem --attach", arm_list() + "\n" + kPlugNotes);
   command->callback([options, &exit_code] { exit_code = plug(*options); });
 }
 

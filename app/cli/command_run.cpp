@@ -90,8 +90,8 @@ driver::Result<void> write_files(const session::Session& session,
     const auto file = std::filesystem::path(options.report) / "index.html";
     const auto written = page->write(grant, file);
     if (!written)
-      scene::logger().warn("{} is not written: {}", file.string(), written.error().message);
-    if (written) report("Page that plays it: {}\n", file.string());
+      scene::logger().warn("{} was not written: {}", file.string(), written.error().message);
+    if (written) report("Page: {}\n", file.string());
   }
   if (!options.save_mesh.empty()) {
     const std::string text = render::off_text(session.mesh_now(object));
@@ -144,7 +144,7 @@ ExitCode run_session(session::Session& session, session::ServoThread& servo,
   std::optional<session::HoldKey> key;
   if (session.setup().hold().by_caller) {
     scene::terminal().info(
-        "Hold the space bar, in this terminal or in the viewer window, to have forces.");
+        "Hold the space bar, in this terminal or in the viewer window, to enable forces.");
     key.emplace(session);
   }
   std::optional<session::ReplugWatches> watch;
@@ -191,8 +191,8 @@ driver::Result<int> find_saved(const session::Session& session, const RunOptions
   if (const auto object = session.find_object(options.save_object)) return *object;
   std::vector<std::string> names;
   for (const auto& object : session.scene().objects) names.push_back(object.name);
-  return driver::Error{"--save-object: the scene has no object \"" + options.save_object + "\"." +
-                       suggestion(options.save_object, names)};
+  return driver::Error{"--save-object: there is no object \"" + options.save_object +
+                       "\" in the scene." + suggestion(options.save_object, names)};
 }
 
 /// Prepares the next run without viewers and recording, while the current one continues.
@@ -240,7 +240,7 @@ ExitCode run_one(RunCourse& course, session::Session& session,
   }
   tell(session.told());
   for (const std::string& warning : stability::stability_warnings(session.scene())) {
-    scene::logger().warn("{} See thimble tune.", warning);
+    scene::logger().warn("{} See `thimble tune`.", warning);
   }
   const auto object = find_saved(session, options);
   if (!object) return leave(complain(object.error(), kExitBadInput));
@@ -357,8 +357,7 @@ void list_shipped() {
       session::print(stdout, "  {:<18} {}\n  {:<18}   {}\n", file.name, file.path.string(), "",
                      first_sentence(scene::description_of(file.path)));
     }
-    if (files.empty())
-      session::print(stdout, "  none is known by name here; give the path of a file\n");
+    if (files.empty()) session::print(stdout, "  none found; use the path of a file\n");
   };
   print("Scenes", scene::shipped_scenes());
   print("Arms", scene::shipped_arms());
@@ -368,11 +367,11 @@ void list_shipped() {
 }  // namespace
 
 void add_run_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("run", "Touch a scene");
+  CLI::App* command = app.add_subcommand("run", "Run a scene with a simulated or a real arm");
   auto options = std::make_shared<RunOptions>();
   command
       ->add_flag_callback("--list", list_shipped,
-                          "List the scenes and arms that are known by name, and end")
+                          "List the scenes and arms that have a name, then exit")
       ->trigger_on_parse();
   add_run_options(*command, *options);
   command->callback([options, &exit_code] { exit_code = run_scene(*options); });

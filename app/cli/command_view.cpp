@@ -13,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/complain.h"
 #include "cli/parts/part.h"
+#include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "report/html/page_libraries.h"
 #include "share/knob_order.h"
@@ -76,7 +77,7 @@ int list_runs() {
     }
   }
   if (runs.empty())
-    scene::print_format("No run is shown; start one with `thimble run SCENE --view`.\n");
+    scene::print_format("No run is active. Start one with `thimble run SCENE --view`.\n");
   return kExitDone;
 }
 
@@ -243,17 +244,19 @@ bool is_recording(const std::string& shown) {
 int view_recordings(const ViewOptions& options, const ShowWindow& show_window) {
   for (const std::string& file : options.shown) {
     if (is_recording(file)) continue;
-    return complain({file + " is the name of a run; show one run, or recordings."}, kExitBadInput);
+    return complain({file + " is the name of a run. Name either one run or recordings."},
+                    kExitBadInput);
   }
   if (options.is_for_runs()) {
-    return complain({options.shown.front() +
-                     " is a recording: nothing can be asked of it, and as text it is written by "
-                     "`thimble export`."},
-                    kExitBadInput);
+    return complain(
+        {options.shown.front() +
+         " is a recording, so options that control a run cannot be used. To write it as "
+         "text, use `thimble export`."},
+        kExitBadInput);
   }
   if (!show_window.recordings) {
     return complain({"The window is not installed: " + how_to_get(kViewer) +
-                     "; or make a page for a browser: `thimble replay FILE --page FILE.html`."},
+                     "; or write a page for a browser: `thimble replay FILE --page FILE.html`."},
                     kExitBadInput);
   }
   return show_window.recordings(options.shown, options.seconds);
@@ -264,7 +267,7 @@ int show(const ViewOptions& options, const ShowWindow& show_window) {
     return view_recordings(options, show_window);
   }
   if (options.shown.size() > 1) {
-    return complain({"A window shows one run; open one for each."}, kExitBadInput);
+    return complain({"RUN: expected one run per window. Open a window for each."}, kExitBadInput);
   }
   if (options.list) return list_runs();
   if (options.asks()) return ask(options);
@@ -282,66 +285,87 @@ int show(const ViewOptions& options, const ShowWindow& show_window) {
 }  // namespace
 
 void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_window) {
-  CLI::App* command =
-      app.add_subcommand("view", "Show a run that goes on in another process, or a recording");
+  CLI::App* command = app.add_subcommand("view", "Show a run of another process, or a recording");
   auto options = std::make_shared<ViewOptions>();
-  command->add_option(
-      "RUN", options->shown,
-      "Name of the run, the newest if absent; or a recording (.h5), of a scene with "
-      "several arms one of each");
-  command->add_flag("--list", options->list, "List the runs and their knobs, and leave");
+  command->add_option("RUN", options->shown,
+                      "Name of a run (default: the newest), or recordings (.h5)");
+  constexpr const char* kViewing = "Viewing";
+  command->add_flag("--list", options->list, "List the runs and their knobs, then exit")
+      ->group(kViewing);
   CLI::Option* text =
-      command->add_flag("--text", options->text, "Print a line a second in place of a window");
+      command->add_flag("--text", options->text, "Print one line per second, without a window")
+          ->group(kViewing);
   CLI::Option* web =
-      command->add_flag("--web", options->web, "Show it in a browser on this computer")
-          ->excludes(text);
-  command->add_option("--port", options->port, "With --web: the port; one that is free if absent")
+      command->add_flag("--web", options->web, "Show the run in a browser on this computer")
+          ->excludes(text)
+          ->group(kViewing);
+  command->add_option("--port", options->port, "Port of --web (default: any free port)")
       ->check(CLI::Range(1, 65535))
-      ->needs(web);
-  command->add_flag("--follow", options->follow,
-                    "With --text or --web: wait for the next run of that name when one ends");
-  command->add_option("--turn", options->turn, "Turn a knob of the run, NAME=VALUE, and leave");
-  CLI::Option* pause = command->add_flag("--pause", options->pause, "Pause the run, and leave");
-  command->add_flag("--resume", options->resume, "Let a paused run go on, and leave")
-      ->excludes(pause);
-  CLI::Option* record =
-      command->add_option("--record", options->record, "Record the run from now on, and leave");
-  command->add_flag("--record-stop", options->record_stop, "End the recording, and leave")
-      ->excludes(record);
-  command->add_flag("--stop", options->stop, "End the run, and leave");
+      ->needs(web)
+      ->group(kViewing);
   command
-      ->add_option("--step", options->steps,
-                   "Let a paused run go on by so many ticks, and leave; with a simulated arm and "
-                   "simulated time, as for the next")
-      ->check(CLI::Range(std::uint64_t{1}, session::kStepsMost));
+      ->add_flag("--follow", options->follow,
+                 "With --text, --web: wait for the next run of that name")
+      ->group(kViewing);
+  command->add_option("--for", options->seconds, "Exit after N seconds")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->group(kViewing);
+  constexpr const char* kControl = "Control the run, then exit";
+  command->add_option("--turn", options->turn, "Set knobs of the run")
+      ->option_text("NAME=VALUE ...")
+      ->group(kControl);
+  CLI::Option* pause =
+      command->add_flag("--pause", options->pause, "Pause the run")->group(kControl);
+  command->add_flag("--resume", options->resume, "Resume a paused run")
+      ->excludes(pause)
+      ->group(kControl);
+  command->add_option("--step", options->steps, "Advance a paused run by N ticks (simulated time)")
+      ->check(CLI::Range(std::uint64_t{1}, session::kStepsMost))
+      ->group(kControl);
   command
       ->add_option("--speed", options->speed,
-                   "Let the run go at this pace, times real time, and leave; its ticks stay the "
-                   "same to the bit")
-      ->check(CLI::Range(session::kSpeedLeast, session::kSpeedMost));
+                   "Speed relative to real time; results stay bit-identical")
+      ->check(CLI::Range(session::kSpeedLeast, session::kSpeedMost))
+      ->group(kControl);
   CLI::Option* restart =
-      command->add_flag("--restart", options->restart,
-                        "Begin the run anew from its first tick, with a simulated arm, and leave");
-  command
-      ->add_option("--scene", options->scene,
-                   "Let the run begin anew with this scene, a file or a name, and leave")
-      ->excludes(restart);
-  command->add_option("--loop", options->loop, "Begin the run anew whenever it ends, or no more")
-      ->check(CLI::IsMember({"on", "off"}));
-  CLI::Option* save = command->add_flag(
-      "--save-knobs", options->save_knobs,
-      "Write the run's scene with its knobs as they are into a new file beside it, tell which, and "
-      "leave; of a scene that came with Thimble into your own scenes");
+      command->add_flag("--restart", options->restart, "Restart the run from its first tick")
+          ->group(kControl);
+  command->add_option("--scene", options->scene, "Restart the run with this scene")
+      ->option_text("NAME|FILE")
+      ->excludes(restart)
+      ->group(kControl);
+  command->add_option("--loop", options->loop, "Restart the run when it ends")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->group(kControl);
+  command->add_flag("--stop", options->stop, "End the run")->group(kControl);
+  constexpr const char* kSave = "Save from the run, then exit";
+  CLI::Option* record =
+      command->add_option("--record", options->record, "Start a recording of the run")
+          ->option_text("FILE")
+          ->group(kSave);
+  command->add_flag("--record-stop", options->record_stop, "Stop the recording")
+      ->excludes(record)
+      ->group(kSave);
+  CLI::Option* save = command
+                          ->add_flag("--save-knobs", options->save_knobs,
+                                     "Save the scene with its current knobs as a new file")
+                          ->group(kSave);
   CLI::Option* save_as =
-      command->add_option("--save-as", options->save_as, "With --save-knobs: into this new file")
-          ->needs(save);
+      command->add_option("--save-as", options->save_as, "File to create with --save-knobs")
+          ->option_text("FILE")
+          ->needs(save)
+          ->group(kSave);
   command
       ->add_flag("--overwrite", options->overwrite,
-                 "With --save-knobs: over the scene's file, if it is your own")
+                 "With --save-knobs: overwrite your own scene file")
       ->needs(save)
-      ->excludes(save_as);
-  command->add_option("--for", options->seconds, "Stop looking on after so many seconds")
-      ->check(CLI::Range(0.1, 86400.0));
+      ->excludes(save_as)
+      ->group(kSave);
+  add_example(*command, "thimble view elephant --pause",
+              "A scene with several arms has one recording per arm; name all of them.\n"
+              "--step, --speed, --restart and --scene require a simulated arm.\n"
+              "--save-knobs prints the new file. It is next to the scene file, or in your own\n"
+              "scenes folder for a scene that came with Thimble.");
   command->callback(
       [options, show_window, &exit_code] { exit_code = show(*options, show_window); });
 }

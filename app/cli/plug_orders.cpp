@@ -26,8 +26,8 @@ bool obey_hand(Plugged& plugged, const std::string& words) {
   const bool read = static_cast<bool>(numbers >> away.x() >> away.y() >> away.z());
   if (!read || numbers >> more || !away.allFinite()) {
     scene::logger().error(
-        "'hand {}' is not understood; say 'hand X Y Z' (m along the base's axes from where the "
-        "hand began), 'hand off' or 'hand on'.",
+        "'hand {}' is invalid. Use 'hand X Y Z' (m, along the axes of the base, from the start of "
+        "the hand), 'hand off' or 'hand on'.",
         words);
     return false;
   }
@@ -41,12 +41,13 @@ bool obey_mass(Plugged& plugged, const std::string& words) {
   double mass = 0;
   std::string more;
   if (!(numbers >> mass) || numbers >> more) {
-    scene::logger().error("'mass {}' is not understood; say 'mass KG', or 'mass 0' for none.",
+    scene::logger().error("'mass {}' is invalid. Use 'mass KG', or 'mass 0' to remove the mass.",
                           words);
     return false;
   }
   if (!plugged.gravity_B) {
-    scene::logger().error("Where a mass hangs is not known; name the arm's file by --arm.");
+    scene::logger().error(
+        "The direction of gravity is unknown. Pass the arm file with --arm FILE.");
     return false;
   }
   const auto fixed = plugged.arm.fix_mass(mass, *plugged.gravity_B);
@@ -77,7 +78,7 @@ bool obey_file(Plugged& plugged, const std::string& path) {
   constexpr std::uint64_t kMaxBytes = 4'000'000;
   auto text = driver::read_file(path, kMaxBytes);
   if (!text) {
-    scene::logger().error("fault script {}: {}", path, text.error().message);
+    scene::logger().error("--faults {}: {}", path, text.error().message);
     return false;
   }
   std::istringstream file(std::move(text).value());

@@ -1,9 +1,9 @@
-"""Says whether two small pictures show the same: PNG files as Chromium writes them, 8 bit, RGB or RGBA.
+"""Compares two small pictures: PNG files as Chromium writes them, 8 bit, RGB or RGBA.
 
   picture_near.py KEPT.png NEW.png
 
-Drawn in software the edges of triangles and of letters fall a little otherwise with another version; in pictures of an
-eighth of the size that is little. Something that is elsewhere, or missing, is much in some places.
+Software rendering differs slightly between versions at the edges of triangles and letters; in pictures scaled to one
+eighth this difference is small. A moved or missing object makes a large difference in some places.
 """
 import struct
 import sys
@@ -16,7 +16,7 @@ OFF_SHARE_MOST = 0.01  # of all pixels
 
 def pixels(path):
     data = open(path, "rb").read()
-    assert data[:8] == b"\x89PNG\r\n\x1a\n", path + " is no PNG"
+    assert data[:8] == b"\x89PNG\r\n\x1a\n", path + " is not a PNG"
     at, packed = 8, b""
     while at < len(data):
         length, kind = struct.unpack(">I4s", data[at:at + 8])
@@ -54,7 +54,7 @@ def pixels(path):
 def main():
     kept, new = (pixels(path) for path in sys.argv[1:])
     if [len(kept), len(kept[0])] != [len(new), len(new[0])]:
-        print("they have not the same size")
+        print("the sizes differ")
         return 1
     apart = [max(abs(a - b) for a, b in zip(one, other)) for row, others in zip(kept, new)
              for one, other in zip(row, others)]

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "cli/exit_code.h"
 #include "cli/log_options.h"
 #include "cli/parts/part.h"
+#include "cli/usage/help_text.h"
 #include "cli/usage/usage_error.h"
 #include "log/console.h"
 #include "log/logger.h"
@@ -28,14 +30,15 @@ namespace thimble::cli {
 namespace {
 
 constexpr const char* kFooter =
-    "Exit codes: 0 done, 1 unexpected trouble, 2 wrong arguments or input, 3 no arm,\n"
-    "4 the force went off with a fault, 5 a figure, a fit or a check misses its goal or did not "
-    "run,\n"
-    "130 ended early by Ctrl-C or SIGTERM.\n"
-    "A physical arm moves by itself: keep clear of it, and keep its power switch at hand.";
+    "Exit codes: 0 done, 1 unexpected error, 2 invalid arguments or input, 3 no arm,\n"
+    "4 force switched off by a fault, 5 a figure, fit or check misses its goal or\n"
+    "did not run, 130 interrupted by Ctrl-C or SIGTERM.\n"
+    "A real arm moves by itself: keep clear of it, and keep its power switch within\n"
+    "reach.";
 
 int run(int argc, char** argv, const Program& program) {
-  CLI::App app("Thimble makes virtual objects touchable.", "thimble");
+  CLI::App app("Thimble lets you feel virtual objects through a force-feedback arm.", "thimble");
+  app.formatter(std::make_shared<HelpFormatter>());
   const scene::BuildInfo build = scene::build_info();
   app.set_version_flag("--version", "thimble " + std::string(build.version) + " (" +
                                         std::string(build.type) + ", " +
@@ -81,8 +84,7 @@ int with_output(int exit_code) {
   struct stat output {};
   const bool closed = fstat(STDOUT_FILENO, &output) != 0;
   if (!lost || closed || S_ISFIFO(output.st_mode) || S_ISSOCK(output.st_mode)) return exit_code;
-  scene::logger().error(
-      "What was to be printed could not be written: is the disk full that it goes to?");
+  scene::logger().error("Failed to write the output. Is the disk full?");
   return exit_code == kExitDone ? kExitTrouble : exit_code;
 }
 
@@ -96,9 +98,9 @@ int run_program(int argc, char** argv, const Program& program) {
   try {
     return with_output(run(argc, argv, program));
   } catch (const std::exception& trouble) {
-    scene::logger().critical("unexpected trouble: {}", trouble.what());
+    scene::logger().critical("unexpected error: {}", trouble.what());
   } catch (...) {
-    scene::logger().critical("unexpected trouble.");
+    scene::logger().critical("unexpected error.");
   }
   return kExitTrouble;
 }
