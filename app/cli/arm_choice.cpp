@@ -17,8 +17,9 @@ void ArmChoice::add_options(CLI::App& command) {
   constexpr const char* kArm = "Arm";
   command
       .add_option("--device", device,
-                  simulates_unasked ? "auto (plugged in, else simulated), sim, or a name"
-                                    : "auto (plugged in), sim, or a name (`thimble devices`)")
+                  falls_back_to_simulation
+                      ? "auto (plugged in, else simulated), sim, or a name"
+                      : "auto (plugged in), sim, or a name (`thimble devices`)")
       ->option_text("ARM")
       ->capture_default_str()
       ->group(kArm);
@@ -51,7 +52,7 @@ driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration)
     if (plugged_in && !chosen.real_arm) left = scene::boards_left_out(*plugged_in);
   }
   if (!chosen.real_arm) {
-    if (choice.device != "sim" && !choice.simulates_unasked) {
+    if (choice.device != "sim" && !choice.falls_back_to_simulation) {
       return driver::Error{
           "No known arm is plugged in (see `thimble devices`). Plug it in, or use a simulated arm: "
           "--device sim --arm NAME (see `thimble run --list`)." +
@@ -73,7 +74,7 @@ driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration)
     chosen.file = std::move(file).value();
     chosen.path = choice.arm_file;
     chosen.name = "sim";
-    if (!left.empty()) chosen.told.push_back(left);
+    if (!left.empty()) chosen.messages.push_back(left);
     return chosen;
   }
   auto found = scene::find_real_arm_file(
@@ -82,9 +83,9 @@ driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration)
   chosen.file = std::move(found->file);
   chosen.path = found->path;
   chosen.name = chosen.real_arm->name();
-  chosen.told.push_back("Arm " + chosen.name + ", arm file: " + found->path.string() + " (" +
-                        found->why + ").");
-  chosen.told.insert(chosen.told.end(), found->told.begin(), found->told.end());
+  chosen.messages.push_back("Arm " + chosen.name + ", arm file: " + found->path.string() + " (" +
+                            found->why + ").");
+  chosen.messages.insert(chosen.messages.end(), found->warnings.begin(), found->warnings.end());
   return chosen;
 }
 

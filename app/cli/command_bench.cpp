@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/file_options.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
@@ -29,16 +29,16 @@ struct BenchOptions {
 int run_bench(const BenchOptions& options) {
   output::OutputPlan plan;
   plan.write_folder("--out", options.out, {"figures.json"});
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto scene = scene::find_scene(options.scene);  // the default was not resolved yet
-  if (!scene) return complain(scene.error(), kExitBadInput);
+  if (!scene) return report_error(scene.error(), kExitBadInput);
   const scene::Quality quality =
       scene::quality_named(options.quality).value_or(scene::Quality::kNormal);
   std::vector<session::Figure> figures;
   std::string advice;
   for (const double rate : options.rates) {
     const auto bench = studies::bench_rate(*scene, rate, options.seconds, quality);
-    if (!bench) return complain(bench.error(), kExitBadInput);
+    if (!bench) return report_error(bench.error(), kExitBadInput);
     const studies::RateVerdict verdict = studies::verdict_of(*bench);
     scene::print_format("%5.0f Hz  %s\n", rate, verdict.sentence.c_str());
     std::fflush(stdout);
@@ -55,7 +55,7 @@ int run_bench(const BenchOptions& options) {
   std::filesystem::create_directories(options.out, status);
   const auto written =
       report::write_figures(figures, std::filesystem::path(options.out) / "figures.json");
-  return written ? kExitDone : complain(written.error(), kExitTrouble);
+  return written ? kExitDone : report_error(written.error(), kExitTrouble);
 }
 
 }  // namespace

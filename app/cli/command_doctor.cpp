@@ -32,7 +32,7 @@ int show_findings(const std::string& root) {
       ++problems;
     }
     scene::print_format("%s%s\n", mark, finding.what.c_str());
-    if (!finding.mend.empty()) scene::print_format("          -> %s\n", finding.mend.c_str());
+    if (!finding.remedy.empty()) scene::print_format("          -> %s\n", finding.remedy.c_str());
   }
   if (problems == 0) return kExitDone;
   scene::print_format("%d problem%s.\n", problems, problems == 1 ? "" : "s");

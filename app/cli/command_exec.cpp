@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/options/ros_options.h"
+#include "cli/report_error.h"
 #include "cli/usage/usage_error.h"
 #include "compat/core/open_channel.h"
 #include "compat/haply/haply_service.h"
@@ -40,7 +40,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-struct Asked {
+struct ExecRequest {
   compat::ExecOptions options;
   std::vector<std::string> arms, devices;
   std::string clock = "wall";
@@ -70,7 +70,7 @@ driver::Result<void> take_topics(RosArguments ros, compat::ExecOptions& options)
 constexpr const char* kPortVariable = "THIMBLE_HAPLY_PORT";
 
 /// Joins the lists of --arm and --device: the first of each describes the program's first arm.
-std::vector<compat::ExecArm> arms_of(const Asked& asked) {
+std::vector<compat::ExecArm> arms_of(const ExecRequest& asked) {
   std::vector<compat::ExecArm> arms(
       std::max<std::size_t>({1, asked.arms.size(), asked.devices.size()}));
   for (std::size_t i = 0; i < asked.arms.size(); ++i) arms[i].arm_file = asked.arms[i];
@@ -116,7 +116,7 @@ int start(std::vector<std::string> command, std::vector<std::string> variables, 
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   // Restores the default actions of the signals that this process ignores
-  // (outlive_trouble_with_files).
+  // (ignore_sigpipe_and_sigxfsz).
   sigset_t own;
   sigemptyset(&own);
   sigaddset(&own, SIGPIPE);
@@ -132,13 +132,13 @@ int start(std::vector<std::string> command, std::vector<std::string> variables, 
 /// Serves the program until it ends, and returns its status (waitpid). An interrupt ends first the
 /// forces, then the program.
 int serve(compat::ArmServer& server, pid_t child, const std::atomic<bool>& stop) {
-  constexpr std::int64_t kLook_ns = 20'000'000;
-  constexpr auto kPatience = std::chrono::milliseconds(500);
-  constexpr auto kLongest = std::chrono::seconds(5);
+  constexpr std::int64_t kPollTime_ns = 20'000'000;
+  constexpr auto kTermDelay = std::chrono::milliseconds(500);
+  constexpr auto kKillDelay = std::chrono::seconds(5);
   Clock::time_point stopped{};
   bool asked = false, killed = false;
   for (int status = 0;;) {
-    server.step(kLook_ns);
+    server.step(kPollTime_ns);
     if (waitpid(child, &status, WNOHANG) == child) return status;
     if (!stop.load() && !server.ended_by_viewer()) continue;
     if (stopped == Clock::time_point{}) {
@@ -146,23 +146,23 @@ int serve(compat::ArmServer& server, pid_t child, const std::atomic<bool>& stop)
       server.end();
     }
     const auto since = Clock::now() - stopped;
-    if (!asked && since > kPatience) asked = kill(child, SIGTERM) == 0;
-    if (!killed && since > kLongest) killed = kill(child, SIGKILL) == 0;
+    if (!asked && since > kTermDelay) asked = kill(child, SIGTERM) == 0;
+    if (!killed && since > kKillDelay) killed = kill(child, SIGKILL) == 0;
   }
 }
 
 /// Serves programs started separately, until the user or a viewer ends it.
 void serve_all(compat::ArmServer& server, const std::atomic<bool>& stop) {
-  constexpr std::int64_t kLook_ns = 20'000'000;
-  while (!stop.load() && !server.ended_by_viewer()) server.step(kLook_ns);
+  constexpr std::int64_t kPollTime_ns = 20'000'000;
+  while (!stop.load() && !server.ended_by_viewer()) server.step(kPollTime_ns);
   server.end();
 }
 
 /// Ends the service. A client that still waits for an arm gets its answer first.
 void end(compat::haply::Service& service, compat::ArmServer& server) {
-  constexpr std::int64_t kLook_ns = 1'000'000;
+  constexpr std::int64_t kPollTime_ns = 1'000'000;
   service.leave();
-  while (!service.ended()) server.step(kLook_ns);
+  while (!service.ended()) server.step(kPollTime_ns);
 }
 
 int exit_code_of(const compat::ArmServer& server, int status, bool stopped) {
@@ -178,7 +178,7 @@ int exit_code_of(const compat::ArmServer& server, int status, bool stopped) {
 }
 
 /// Makes the service and opens its arms; `code`: exit code for the error.
-driver::Result<std::unique_ptr<compat::haply::Service>> make_service(const Asked& asked,
+driver::Result<std::unique_ptr<compat::haply::Service>> make_service(const ExecRequest& asked,
                                                                      compat::ArmServer& server,
                                                                      ExitCode& code) {
   compat::use_channel(&server.channel(), server.address());
@@ -186,8 +186,8 @@ driver::Result<std::unique_ptr<compat::haply::Service>> make_service(const Asked
   auto service = compat::haply::Service::listen(
       asked.port, [](const std::string& sentence) { scene::logger().warn("{}", sentence); });
   if (!service) return service;
-  constexpr std::int64_t kLook_ns = 1'000'000;
-  while (!(*service)->ready()) server.step(kLook_ns);
+  constexpr std::int64_t kPollTime_ns = 1'000'000;
+  while (!(*service)->ready()) server.step(kPollTime_ns);
   if (server.runs() < static_cast<int>(arms_of(asked).size())) {
     end(**service, server);
     code = kExitNoDevice;
@@ -204,16 +204,17 @@ void warn_of_no_arm(const std::string& program, const fs::path& libraries) {
       program, libraries.string());
 }
 
-int run_program(const Asked& asked, const std::vector<std::string>& command) {
+int run_program(const ExecRequest& asked, const std::vector<std::string>& command) {
   const bool serves = !asked.serve.empty();
   if (command.empty() && !serves) {
-    return complain({"PROGRAM is missing. Usage: thimble exec [OPTIONS] [--] PROGRAM ARGUMENTS..."},
-                    kExitBadInput);
+    return report_error(
+        {"PROGRAM is missing. Usage: thimble exec [OPTIONS] [--] PROGRAM ARGUMENTS..."},
+        kExitBadInput);
   }
   const auto hold = session::hold_named(asked.hold_to_run);
-  if (!hold) return complain({"--hold-to-run: " + hold.error().message}, kExitBadInput);
+  if (!hold) return report_error({"--hold-to-run: " + hold.error().message}, kExitBadInput);
   if (hold->by_caller) {
-    return complain(
+    return report_error(
         {"--hold-to-run key cannot be used here: the terminal belongs to the program. Use a "
          "button of the arm: --hold-to-run button."},
         kExitBadInput);
@@ -224,30 +225,30 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
   plan.read(asked.options.hand);
   plan.read(asked.options.firmware);
   plan.write("--record", asked.options.record, session::kRecordingOutput, asked.options.overwrite);
-  if (const auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
-  const auto libraries = compat::face_folder();
-  if (!libraries) return complain(libraries.error(), kExitTrouble);
+  if (const auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
+  const auto libraries = compat::library_folder();
+  if (!libraries) return report_error(libraries.error(), kExitTrouble);
   compat::ExecOptions options = asked.options;
   options.program = command.empty() ? asked.serve : fs::path(command.front()).filename().string();
   options.arms = arms_of(asked);
   options.paced = asked.clock == "virtual";
   options.hold = *hold;
   if (auto taken = take_topics(asked.ros, options); !taken) {
-    return complain(taken.error(), kExitBadInput);
+    return report_error(taken.error(), kExitBadInput);
   }
   const std::atomic<bool>& stop = scene::catch_interrupts();
   for (const compat::ExecArm& arm : options.arms) {
-    if (arm.device != "sim") scene::leave_rather_than_stop();
+    if (arm.device != "sim") scene::treat_sigtstp_as_exit();
   }
   auto made = compat::ArmServer::make(options, stop);
-  if (!made) return complain(made.error(), kExitBadInput);
+  if (!made) return report_error(made.error(), kExitBadInput);
   compat::ArmServer& server = **made;
-  const scene::LeavingGuard guard;
+  const scene::ForceExitGuard guard;
   std::unique_ptr<compat::haply::Service> service;
   if (serves) {
     ExitCode code = kExitDone;
     auto serving = make_service(asked, server, code);
-    if (!serving) return complain(serving.error(), code);
+    if (!serving) return report_error(serving.error(), code);
     service = std::move(serving).value();
     scene::terminal().info(
         "Programs of the Inverse3 can connect to the arm at ws://localhost:{}.{}", service->port(),
@@ -262,8 +263,8 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
         start(command, environment(*libraries, server.address(), service.get()), child);
     if (error != 0) {
       if (service) end(*service, server);
-      return complain({command.front() + " cannot be started: " + std::strerror(error) + "."},
-                      kExitBadInput);
+      return report_error({command.front() + " cannot be started: " + std::strerror(error) + "."},
+                          kExitBadInput);
     }
     status = serve(server, child, stop);
   }
@@ -284,7 +285,7 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
 void add_exec_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("exec", "Run a program that was written for another maker's arm");
-  auto asked = std::make_shared<Asked>();
+  auto asked = std::make_shared<ExecRequest>();
   compat::ExecOptions& options = asked->options;
   command->prefix_command();
   command->footer(
@@ -366,7 +367,7 @@ void add_exec_command(CLI::App& app, int& exit_code) {
     const auto words = command->remaining();
     // A word with a dash before PROGRAM is an option of this command.
     exit_code = !words.empty() && words.front().starts_with('-') && words.front() != "--"
-                    ? complain({unknown_word(*command, words.front())}, kExitBadInput)
+                    ? report_error({unknown_word(*command, words.front())}, kExitBadInput)
                     : run_program(*asked, words);
   });
 }

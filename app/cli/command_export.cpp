@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
@@ -30,32 +30,32 @@ int export_recording(const ExportOptions& options) {
   plan.write("--csv", options.csv, output::kTable);
   plan.write_new_folder("--bag", options.bag);
   plan.write("--sound", options.sound, output::kSound);
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto recording = session::read_recording(options.file);
-  if (!recording) return complain(recording.error(), kExitBadInput);
-  const auto tell = [&recording](const std::string& file) {
+  if (!recording) return report_error(recording.error(), kExitBadInput);
+  const auto report_file = [&recording](const std::string& file) {
     scene::print_format("%s: %zu ticks of %s at %g Hz%s.\n", file.c_str(), recording->ticks.size(),
                         recording->info.scene.c_str(), recording->info.rate,
                         recording->complete ? "" : "; the recording was cut off");
   };
   if (!options.csv.empty()) {
     if (auto written = session::write_csv(*recording, options.csv); !written) {
-      return complain(written.error(), kExitTrouble);
+      return report_error(written.error(), kExitTrouble);
     }
-    tell(options.csv);
+    report_file(options.csv);
   }
   if (!options.bag.empty()) {
     if (auto written = session::export_bag(*recording, options.bag); !written) {
-      return complain(written.error(), kExitTrouble);
+      return report_error(written.error(), kExitTrouble);
     }
-    tell(options.bag);
+    report_file(options.bag);
   }
   if (!options.sound.empty()) {
     const auto samples = view::sound_of(recording->ticks, std::llround(1e9 / recording->info.rate));
     if (auto written = view::write_wav(samples, view::TouchSound::kRate, options.sound); !written) {
-      return complain(written.error(), kExitTrouble);
+      return report_error(written.error(), kExitTrouble);
     }
-    tell(options.sound);
+    report_file(options.sound);
   }
   return kExitDone;
 }

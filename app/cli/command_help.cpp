@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "cli/usage/usage_error.h"
 #include "keys/key_schema.h"
@@ -27,16 +27,16 @@ driver::Result<std::vector<scene::KeyNote>> keys_of(const std::string& file) {
 
 int print_keys(const HelpOptions& options) {
   const auto keys = keys_of(options.file);
-  if (!keys) return complain(keys.error(), kExitBadInput);
+  if (!keys) return report_error(keys.error(), kExitBadInput);
   const std::string text =
       options.page ? scene::key_page(*keys) : scene::key_text(*keys, options.key);
   if (text.empty()) {
     std::vector<std::string> names;
     for (const scene::KeyNote& key : *keys) names.push_back(key.key);
-    return complain(driver::Error{"KEY: there is no key \"" + options.key + "\" in " +
-                                  options.file + " files. `thimble help " + options.file +
-                                  "` lists all keys." + suggestion(options.key, names)},
-                    kExitBadInput);
+    return report_error(driver::Error{"KEY: there is no key \"" + options.key + "\" in " +
+                                      options.file + " files. `thimble help " + options.file +
+                                      "` lists all keys." + suggestion(options.key, names)},
+                        kExitBadInput);
   }
   scene::print_format("%s", text.c_str());
   return kExitDone;
@@ -46,12 +46,12 @@ int print_keys(const HelpOptions& options) {
 int print_schema(const HelpOptions& options) {
   const std::string file = options.key.empty() ? "scene" : options.key;
   if (file != "scene" && file != "arm") {
-    return complain(
+    return report_error(
         driver::Error{"help schema: expected scene or arm, found \"" + options.key + "\"."},
         kExitBadInput);
   }
   const auto keys = keys_of(file);
-  if (!keys) return complain(keys.error(), kExitBadInput);
+  if (!keys) return report_error(keys.error(), kExitBadInput);
   scene::print_format("%s", scene::key_schema(*keys, "Thimble " + file + " file").c_str());
   return kExitDone;
 }

@@ -18,8 +18,8 @@
 #include "arm_policy/feel_check_record.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/prompts/yes_question.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "enter_key.h"
 #include "hil/hil_files.h"
@@ -70,7 +70,7 @@ bringup::Prompt prompt_of(bool person, const std::atomic<bool>& stop) {
     std::fflush(stdout);
     session::EnterKey key = person ? session::EnterKey::kNothing : session::EnterKey::kPressed;
     while (key == session::EnterKey::kNothing && !stop.load()) {
-      key = session::look_for_enter();
+      key = session::check_enter_key();
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     return key == session::EnterKey::kPressed && !stop.load();
@@ -99,7 +99,7 @@ class SuiteClock {
     const std::lock_guard lock(mutex_);
     name_ = std::move(name);
     since_ = Clock::now();
-    said_ = 0;
+    progress_reports_ = 0;
   }
 
  private:
@@ -114,18 +114,18 @@ class SuiteClock {
         timed_out_.store(true);
         stop_.store(true);
       }
-      say_progress();
+      print_progress();
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   }
 
-  void say_progress() {
+  void print_progress() {
     constexpr int kEvery_s = 30;
     const std::lock_guard lock(mutex_);
     const auto passed = std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - since_);
     const auto due = static_cast<int>(passed.count()) / kEvery_s;
-    if (name_.empty() || due <= said_) return;
-    said_ = due;
+    if (name_.empty() || due <= progress_reports_) return;
+    progress_reports_ = due;
     scene::print_format("        %-16s has been running for %d s\n", name_.c_str(), kEvery_s * due);
     std::fflush(stdout);
   }
@@ -136,7 +136,7 @@ class SuiteClock {
   std::mutex mutex_;
   std::string name_;
   Clock::time_point since_ = Clock::now();
-  int said_ = 0;
+  int progress_reports_ = 0;
   std::thread thread_;
 };
 
@@ -167,9 +167,9 @@ class HilFiles {
     record_.end = code == kExitNoDevice ? "no_arm" : "refused";
     record_.exit_code = code;
     if (auto written = write({}, error.message, true); !written) {
-      complain(written.error(), kExitTrouble);
+      report_error(written.error(), kExitTrouble);
     }
-    return complain(error, code);
+    return report_error(error, code);
   }
 
  private:
@@ -213,7 +213,7 @@ int run_hil(HilCommand command) {
   plan.read(command.choice.firmware);
   plan.write("--json", command.json, output::kJson);
   plan.write("--junit", command.junit, output::kXml);
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   hil::HilOptions& options = command.options;
   options.full = command.suite == "full";
   HilFiles files(command, {.arm = command.choice.device,
@@ -222,7 +222,7 @@ int run_hil(HilCommand command) {
                            .suite = command.suite,
                            .time = now_utc()});
   if (auto written = files.write({}, "The suite ended before this check.", false); !written) {
-    return complain(written.error(), kExitTrouble);
+    return report_error(written.error(), kExitTrouble);
   }
   if (command.require_device && command.choice.device == "sim") {
     return files.end_early(
@@ -239,15 +239,16 @@ int run_hil(HilCommand command) {
   files.record().arm_file = chosen->file.name;
   files.record().simulated = !chosen->real_arm;
   const SimulatedNote simulated(*chosen, "result of a real arm");
-  for (const std::string& sentence : chosen->told) scene::print_format("%s\n", sentence.c_str());
+  for (const std::string& sentence : chosen->messages)
+    scene::print_format("%s\n", sentence.c_str());
   const std::atomic<bool>& interrupted = scene::catch_interrupts();
-  if (chosen->real_arm) scene::leave_rather_than_stop();
-  const scene::LeavingGuard guard;
+  if (chosen->real_arm) scene::treat_sigtstp_as_exit();
+  const scene::ForceExitGuard guard;
   SuiteClock clock(interrupted, command.timeout);
   const std::atomic<bool>& stop = clock.stop();
   if (chosen->real_arm) {
     const scene::RealArmFile file{
-        .path = chosen->path, .file = chosen->file, .why = {}, .told = {}};
+        .path = chosen->path, .file = chosen->file, .why = {}, .warnings = {}};
     options.checked = scene::has_passed(
         scene::describe_checked(*chosen->real_arm, file, command.choice.firmware));
     scene::print_format(
@@ -268,7 +269,7 @@ int run_hil(HilCommand command) {
       .stop = stop,
       .prompt = prompt_of(chosen->real_arm.has_value(), stop),
       .question = chosen->real_arm ? bringup::Question([&stop](const std::string& what) {
-        return says_yes(what, stop);
+        return ask_yes_no(what, stop);
       })
                                    : bringup::Question(),
       .attended = options.attended || !chosen->real_arm};
@@ -308,7 +309,7 @@ int run_hil(HilCommand command) {
   if (clock.timed_out()) {
     scene::print_format("--timeout: the suite was stopped after %g s.\n", command.timeout);
   }
-  if (!written) return complain(written.error(), kExitTrouble);
+  if (!written) return report_error(written.error(), kExitTrouble);
   scene::logger().info("The suite {} of {} ended with exit code {}.", command.suite, chosen->name,
                        static_cast<int>(code));
   return code;
@@ -320,7 +321,7 @@ void add_hil_command(CLI::App& app, int& exit_code) {
   CLI::App* sub =
       app.add_subcommand("hil", "Run the hardware checks of an arm, for a person or a test server");
   auto command = std::make_shared<HilCommand>();
-  command->choice.simulates_unasked = false;
+  command->choice.falls_back_to_simulation = false;
   command->choice.add_options(*sub);
   command->choice.add_real_time_option(*sub);
   sub->add_flag("--require-device", command->require_device, "Exit with 3 unless the arm is real")

@@ -16,9 +16,9 @@
 #include "bringup/identify/simulated_bench.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/prompts/key_stop.h"
 #include "cli/prompts/yes_question.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "enter_key.h"
 #include "identified/identify_page.h"
@@ -49,7 +49,7 @@ struct IdentifyCommand {
 // Duration of a motion divided by that of one place: seven places take about as long as one motion,
 // and together with both motions of 60 s three minutes. And the minimum at one place, s [chosen: it
 // gives the mass of light arms to 0.2 %].
-constexpr double kPlaceShare = 12, kPlaceSecondsLeast = 2;
+constexpr double kPlaceShare = 12, kPlaceSecondsMin = 2;
 
 std::string today() {
   const std::time_t now = std::time(nullptr);
@@ -66,7 +66,7 @@ const char* how_to_stop(bool terminal) {
 }
 
 /// Returns the sentence that announces the motion of the tip.
-std::string led_text(const bringup::IdentifyOptions& options) {
+std::string poses_text(const bringup::IdentifyOptions& options) {
   if (options.places == 0) return "";
   return fmt::format(", then move slowly to {} poses of its workspace and shake for {:g} s at each",
                      options.places, options.place_seconds);
@@ -78,7 +78,7 @@ driver::Result<std::unique_ptr<bringup::BenchArm>> open_real(const ChosenArm& ch
                                                              bool loaded,
                                                              const std::atomic<bool>& stop) {
   auto bench = bringup::BenchArm::open(chosen.file, chosen.real_arm, command.choice.firmware, {},
-                                       command.options.force_most);
+                                       command.options.max_force);
   if (!bench) return bench;
   if (loaded) {
     scene::print_format(
@@ -90,13 +90,13 @@ driver::Result<std::unique_ptr<bringup::BenchArm>> open_real(const ChosenArm& ch
         "Put the tip into the middle of the workspace so that it stays there, and remove your "
         "hand. The tip will shake by a few millimetres with at most %g N for %g s%s; %s. Press "
         "Enter to begin.\n",
-        command.options.force_most, command.options.seconds, led_text(command.options).c_str(),
+        command.options.max_force, command.options.seconds, poses_text(command.options).c_str(),
         how_to_stop(has_terminal()));
   }
   std::fflush(stdout);
   session::EnterKey key = session::EnterKey::kNothing;
   const auto done = [&key] {
-    return (key = session::look_for_enter()) != session::EnterKey::kNothing;
+    return (key = session::check_enter_key()) != session::EnterKey::kNothing;
   };
   if (!(*bench)->hold(done, stop) || key != session::EnterKey::kPressed) {
     return driver::Error{"Cancelled before the motion began; nothing was saved."};
@@ -107,7 +107,8 @@ driver::Result<std::unique_ptr<bringup::BenchArm>> open_real(const ChosenArm& ch
 /// Returns whether the feel check of a real arm is valid, and reports if not. Larger forces than
 /// those of that check need known signs and watchdog.
 bool checked(const ChosenArm& chosen, const std::string& firmware) {
-  const scene::RealArmFile file{.path = chosen.path, .file = chosen.file, .why = {}, .told = {}};
+  const scene::RealArmFile file{
+      .path = chosen.path, .file = chosen.file, .why = {}, .warnings = {}};
   return scene::has_passed(scene::describe_checked(*chosen.real_arm, file, firmware));
 }
 
@@ -146,13 +147,13 @@ int keep(const IdentifyCommand& command, const ChosenArm& chosen, const bringup:
     const std::string question = (bad ? "The fit is bad. Write it anyway, marked BAD FIT, to "
                                       : "Write these constants to the new arm file ") +
                                  command.output + "?";
-    if (!says_yes(question, stop)) return stop.load() ? kExitInterrupted : left(".");
+    if (!ask_yes_no(question, stop)) return stop.load() ? kExitInterrupted : left(".");
   }
   const auto file = scene::find_arm_file(chosen.path.string());
-  if (!file) return complain(file.error(), kExitBadInput);
+  if (!file) return report_error(file.error(), kExitBadInput);
   const auto written = bringup::write_identified(*file, command.output, found,
                                                  {.date = today(), .arm = chosen.name});
-  if (!written) return complain(written.error(), kExitTrouble);
+  if (!written) return report_error(written.error(), kExitTrouble);
   scene::print_format("Written to %s%s.\n", command.output.c_str(),
                       bad ? ", with each value marked BAD FIT" : "");
   return done;
@@ -160,25 +161,27 @@ int keep(const IdentifyCommand& command, const ChosenArm& chosen, const bringup:
 
 int identify_arm(IdentifyCommand command) {
   const auto chosen = resolve(command.choice, false);
-  if (!chosen) return complain(chosen.error(), exit_code_of(command.choice));
+  if (!chosen) return report_error(chosen.error(), exit_code_of(command.choice));
   const SimulatedNote simulated(*chosen, "constant of an arm on the desk");
-  for (const std::string& sentence : chosen->told) scene::print_format("%s\n", sentence.c_str());
+  for (const std::string& sentence : chosen->messages)
+    scene::print_format("%s\n", sentence.c_str());
   if (auto allowed = check_priority(command.choice, *chosen); !allowed) {
-    return complain(allowed.error(), kExitBadInput);
+    return report_error(allowed.error(), kExitBadInput);
   }
   if (chosen->real_arm && !checked(*chosen, command.choice.firmware)) {
-    return complain({"identify moves the arm by itself, and this arm has not passed the feel check "
-                     "with this arm file. Run `thimble feel-check` first."},
-                    kExitBadInput);
+    return report_error(
+        {"identify moves the arm by itself, and this arm has not passed the feel check "
+         "with this arm file. Run `thimble feel-check` first."},
+        kExitBadInput);
   }
   if (auto right = bringup::check_forces(chosen->file, command.options); !right) {
-    return complain(right.error(), kExitBadInput);
+    return report_error(right.error(), kExitBadInput);
   }
   // --output, --yes or an answer at the terminal requests the file.
   const bool writes = !command.output.empty() || command.yes || has_terminal();
   if (command.output.empty()) command.output = chosen->file.name + "_identified.yaml";
   if (auto free = bringup::check_new_file(command.output); writes && !free) {
-    return complain(free.error(), kExitBadInput);
+    return report_error(free.error(), kExitBadInput);
   }
   output::OutputPlan plan;
   plan.read(chosen->path);
@@ -186,22 +189,21 @@ int identify_arm(IdentifyCommand command) {
   if (writes) plan.write("--output", command.output, output::kArmFile);
   plan.write("--record", command.record, session::kRecordingOutput, command.force);
   plan.write_folder("--report", command.report, {"figures.json", "index.html"});
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const std::atomic<bool>& stop = scene::catch_interrupts();
-  if (chosen->real_arm) scene::leave_rather_than_stop();
-  const scene::LeavingGuard guard;
+  if (chosen->real_arm) scene::treat_sigtstp_as_exit();
+  const scene::ForceExitGuard guard;
   // Gives a person time to let go of the mass.
   if (chosen->real_arm) command.options.lead = 4;
   command.options.link = true;
-  command.options.place_seconds =
-      std::max(kPlaceSecondsLeast, command.options.seconds / kPlaceShare);
+  command.options.place_seconds = std::max(kPlaceSecondsMin, command.options.seconds / kPlaceShare);
   std::optional<KeyStop> keys;
   const bringup::OpenBench open = [&](bool loaded) {
     keys.reset();  // Enter begins the motion, so it must not stop it
     auto bench = chosen->real_arm ? open_real(*chosen, command, loaded, stop)
                                   : bringup::simulated_bench(
                                         chosen->file, loaded ? command.options.known_mass : 0,
-                                        false, command.options.force_most);
+                                        false, command.options.max_force);
     if (!bench) return bench;
     keys.emplace();
     scene::print_format("The tip %s; %s.\n",
@@ -225,11 +227,11 @@ int identify_arm(IdentifyCommand command) {
   }
   if (!ticks.empty()) {
     if (auto written = write_motion(*chosen, command.record, ticks, command.force); !written) {
-      return complain(written.error(), kExitTrouble);
+      return report_error(written.error(), kExitTrouble);
     }
     scene::print_format("The motion was recorded in %s.\n", command.record.c_str());
   }
-  if (!found) return complain(found.error(), kExitFault);
+  if (!found) return report_error(found.error(), kExitFault);
   scene::print_format("%s", bringup::constants_table(*found, chosen->file).c_str());
   if (!command.report.empty()) {
     const auto written =
@@ -240,11 +242,11 @@ int identify_arm(IdentifyCommand command) {
                                          .date = today(),
                                          .program = scene::program_name(),
                                          .seconds = command.options.seconds,
-                                         .force_most = command.options.force_most,
+                                         .max_force = command.options.max_force,
                                          .bad_fit_is_written = command.write_bad_fit,
                                          .known_mass = command.options.known_mass},
                                         command.report);
-    if (!written) return complain(written.error(), kExitTrouble);
+    if (!written) return report_error(written.error(), kExitTrouble);
     scene::print_format("Report in %s/index.html.\n", command.report.c_str());
   }
   scene::logger().info("The arm {} was identified{}.", chosen->name,
@@ -274,7 +276,7 @@ void add_identify_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(3, 9) | CLI::IsMember({0}))
       ->capture_default_str()
       ->group(kMotion);
-  sub->add_option("--force-most", command->options.force_most, "Largest force, N")
+  sub->add_option("--force-most", command->options.max_force, "Largest force, N")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->group(kMotion);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "disk_paging/page_file.h"
 #include "log/printed_text.h"
@@ -69,7 +69,7 @@ void print_touching(const render::TriangleMesh& mesh, Json& json) {
 }
 
 // Prints whether a mesh can be touched, and if not, why.
-int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& found, Json& json) {
+int print_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& found, Json& json) {
   json["touchable"] = true;
   json["turned_on_load"] = 0;
   if (found.touchable()) {
@@ -114,7 +114,7 @@ std::string thicken(render::TriangleMesh& mesh, double thickness, Json& json) {
 }
 
 // Tries the repairs on a mesh that cannot be touched, and prints which one helps.
-void tell_remedy(const render::TriangleMesh& mesh, const render::MeshFindings& found, Json& json) {
+void print_remedy(const render::TriangleMesh& mesh, const render::MeshFindings& found, Json& json) {
   render::RepairedMesh repaired = render::repair_mesh(mesh);
   json["remedy"] = {{"options", nullptr}};
   Json& remedy = json["remedy"];
@@ -156,7 +156,7 @@ int repair(const render::TriangleMesh& mesh, const MeshOptions& options, Json& j
   }
   const std::string text = render::off_text(repaired.mesh);
   if (auto saved = output::write_file(options.repair, output::kMesh, text); !saved) {
-    return complain(saved.error(), kExitTrouble);
+    return report_error(saved.error(), kExitTrouble);
   }
   scene::print_format("Repaired: %s\n", options.repair.c_str());
   if (repaired.changes.empty() && sheets.empty()) scene::print_format("  no changes\n");
@@ -166,17 +166,17 @@ int repair(const render::TriangleMesh& mesh, const MeshOptions& options, Json& j
   json.update(report::mesh_json(found));
   print(found);
   print_touching(repaired.mesh, json);
-  const int verdict = tell_verdict(repaired.mesh, found, json);
-  if (verdict != kExitDone) tell_remedy(repaired.mesh, found, json);
+  const int verdict = print_verdict(repaired.mesh, found, json);
+  if (verdict != kExitDone) print_remedy(repaired.mesh, found, json);
   return verdict;
 }
 
 // Describes a page file; its triangles are checked one page at a time, if at all.
-int tell_pages(const MeshOptions& options, Json& json) {
+int describe_pages(const MeshOptions& options, Json& json) {
   const auto pages = render::PageFile::open(options.file);
-  if (!pages) return complain(pages.error(), kExitBadInput);
+  if (!pages) return report_error(pages.error(), kExitBadInput);
   if (!options.picture.empty() || !options.repair.empty()) {
-    return complain(
+    return report_error(
         {options.file + ": --picture and --repair cannot be used with a page file. Use the mesh "
                         "from which it was made."},
         kExitBadInput);
@@ -215,23 +215,23 @@ int tell_pages(const MeshOptions& options, Json& json) {
   return kExitDone;
 }
 
-int tell_mesh(const MeshOptions& options, Json& json) {
+int describe_mesh_file(const MeshOptions& options, Json& json) {
   if (!options.repair.empty() && std::filesystem::path(options.repair).extension() != ".off") {
-    return complain({"--repair: " + options.repair +
-                     ": meshes are written as OFF. Use a file name that ends in .off."},
-                    kExitBadInput);
+    return report_error({"--repair: " + options.repair +
+                         ": meshes are written as OFF. Use a file name that ends in .off."},
+                        kExitBadInput);
   }
   output::OutputPlan plan;
   plan.read(options.file);
   plan.write("--picture", options.picture, output::kind_of_name(options.picture));
   plan.write("--repair", options.repair, output::kMesh);
   plan.write("--json", options.json, output::kJson);
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   json["file"] = options.file;
-  if (render::is_page_file(options.file)) return tell_pages(options, json);
+  if (render::is_page_file(options.file)) return describe_pages(options, json);
   render::MeshFileInfo info;
   const auto mesh = render::load_mesh(options.file, &info);
-  if (!mesh) return complain(mesh.error(), kExitBadInput);
+  if (!mesh) return report_error(mesh.error(), kExitBadInput);
   const render::MeshFindings found = render::check_mesh(*mesh);
   scene::print_format("%s (lengths in the file's unit)\n", options.file.c_str());
   json.update(report::mesh_json(found));
@@ -255,28 +255,28 @@ int tell_mesh(const MeshOptions& options, Json& json) {
     if (const auto drawn =
             report::draw_mesh(*mesh, options.picture, title, "unit of the file", &found);
         !drawn) {
-      return complain(drawn.error(), kExitTrouble);
+      return report_error(drawn.error(), kExitTrouble);
     }
     scene::print_format("Picture: %s\n", options.picture.c_str());
   }
-  const int verdict = tell_verdict(*mesh, found, json);
+  const int verdict = print_verdict(*mesh, found, json);
   if (!options.repair.empty()) {
     json["repaired"] = {{"file", options.repair}};
     return repair(*mesh, options, json["repaired"]);
   }
-  if (verdict != kExitDone) tell_remedy(*mesh, found, json);
+  if (verdict != kExitDone) print_remedy(*mesh, found, json);
   return verdict;
 }
 
 // Describes the mesh on the terminal and optionally in a file.
 int describe_mesh(const MeshOptions& options) {
   Json json;
-  const int verdict = tell_mesh(options, json);
+  const int verdict = describe_mesh_file(options, json);
   // Without findings (bad arguments, an unreadable file) no file is written.
   if (options.json.empty() || !json.contains("touchable")) return verdict;
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   if (auto saved = output::write_file(options.json, output::kJson, text); !saved) {
-    return complain(saved.error(), kExitTrouble);
+    return report_error(saved.error(), kExitTrouble);
   }
   return verdict;
 }

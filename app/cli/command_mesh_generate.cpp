@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "disk_paging/page_file.h"
 #include "log/printed_text.h"
@@ -29,11 +29,11 @@ int generate_mesh(const GenerateOptions& options) {
   const studies::RingGrid grid =
       studies::ring_grid(ring, static_cast<std::int64_t>(options.triangles));
   auto file = output::OutputFile::open(options.out, output::kPageFile);
-  if (!file) return complain(file.error(), kExitBadInput);
+  if (!file) return report_error(file.error(), kExitBadInput);
   if (const auto written = studies::write_ring(ring, grid, file->part()); !written) {
-    return complain(file->named(written.error()), kExitTrouble);
+    return report_error(file->named(written.error()), kExitTrouble);
   }
-  if (const auto done = file->commit(); !done) return complain(done.error(), kExitTrouble);
+  if (const auto done = file->commit(); !done) return report_error(done.error(), kExitTrouble);
   scene::print_format("%s: bumpy ring, %d triangles in %d pages; peak memory %.0f MiB.\n",
                       options.out.c_str(), grid.triangle_count(),
                       grid.triangle_count() / render::kPageTriangles,

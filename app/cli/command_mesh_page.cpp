@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "compact_mesh/packed_surface.h"
 #include "disk_paging/page_file.h"
@@ -25,19 +25,19 @@ int page_mesh(const PageOptions& options) {
   output::OutputPlan plan;
   plan.read(options.in);
   plan.write("OUT", options.out, output::kPageFile);
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto mesh = render::load_mesh(options.in);
-  if (!mesh) return complain(mesh.error(), kExitBadInput);
+  if (!mesh) return report_error(mesh.error(), kExitBadInput);
   const auto checked = render::ContactMesh::build(*mesh);
-  if (!checked) return complain({options.in + ": " + checked.error().message}, kExitBadInput);
+  if (!checked) return report_error({options.in + ": " + checked.error().message}, kExitBadInput);
   const auto surface = render::PackedSurface::build(*checked);
-  if (!surface) return complain({options.in + ": " + surface.error().message}, kExitBadInput);
+  if (!surface) return report_error({options.in + ": " + surface.error().message}, kExitBadInput);
   auto file = output::OutputFile::open(options.out, output::kPageFile);
-  if (!file) return complain(file.error(), kExitTrouble);
+  if (!file) return report_error(file.error(), kExitTrouble);
   if (const auto written = render::write_page_file(*surface, file->part()); !written) {
-    return complain(file->named(written.error()), kExitTrouble);
+    return report_error(file->named(written.error()), kExitTrouble);
   }
-  if (const auto done = file->commit(); !done) return complain(done.error(), kExitTrouble);
+  if (const auto done = file->commit(); !done) return report_error(done.error(), kExitTrouble);
   scene::print_format(
       "%s: %d triangles in %d pages.\n", options.out.c_str(), surface->triangle_count(),
       (surface->triangle_count() + render::kPageTriangles - 1) / render::kPageTriangles);

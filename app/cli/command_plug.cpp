@@ -15,9 +15,9 @@
 
 #include "arms/falcon/falcon_boot.h"
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/file_options.h"
-#include "cli/plug_orders.h"
+#include "cli/plug_commands.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "cli/usage/usage_error.h"
 #include "gravity_terms.h"
@@ -139,7 +139,7 @@ usb::HandMotion motion_of(const std::string& name) {
   return name == "tap" ? usb::HandMotion::kTap : usb::HandMotion::kStroke;
 }
 
-void say_what_to_do(const usb::UsbipServer& server, const PlugOptions& options) {
+void print_instructions(const usb::UsbipServer& server, const PlugOptions& options) {
   scene::print_format("The simulated arm '%s' is available on port %u as USB device %s.\n",
                       options.arm.c_str(), static_cast<unsigned>(server.port()),
                       server.bus_id().c_str());
@@ -171,28 +171,28 @@ int plug(const PlugOptions& options) {
   if (!options.firmware.empty()) {
     auto image = driver::falcon::read_firmware(options.firmware);
     if (!image) {
-      return complain(image.error(), kExitBadInput);
+      return report_error(image.error(), kExitBadInput);
     }
     shelf.firmware = std::move(*image);
   }
   std::optional<Eigen::Vector3d> gravity_B;
   if (!options.arm_file.empty()) {
     const auto file = simulated_file(options.arm_file);
-    if (!file) return complain(file.error(), kExitBadInput);
+    if (!file) return report_error(file.error(), kExitBadInput);
     shelf.arm = usb::ShelfArm{.model = file->model, .settings = file->simulated};
     gravity_B = file->R_WB.transpose() * Eigen::Vector3d(0, 0, -scene::kGravity);
   }
   auto arm = usb::make_usb_arm(options.arm, shelf);
   if (!arm) {
-    return complain(arm.error(), kExitBadInput);
+    return report_error(arm.error(), kExitBadInput);
   }
   usb::FaultyDevice device(**arm, options.seed);
-  Plugged plugged{
+  PluggedArm plugged{
       .device = device, .arm = **arm, .p_BH = (*arm)->truth().p_BT, .gravity_B = gravity_B};
-  if (!options.faults.empty() && !obey_file(plugged, options.faults)) return kExitBadInput;
-  OrderPipe control;
+  if (!options.faults.empty() && !execute_file(plugged, options.faults)) return kExitBadInput;
+  CommandPipe control;
   if (!options.control.empty() && !control.open(options.control)) {
-    return complain(
+    return report_error(
         {"--control: cannot create the pipe " + options.control + ". Remove an existing file."},
         kExitBadInput);
   }
@@ -201,14 +201,14 @@ int plug(const PlugOptions& options) {
     auto output = output::OutputFile::open(options.trace, output::kMotionTrace);
     // The file is published at once, because it is read while the arm is plugged in.
     auto named = output ? output->publish() : driver::Result<void>(output.error());
-    if (!named) return complain(named.error(), kExitBadInput);
+    if (!named) return report_error(named.error(), kExitBadInput);
     trace.emplace(std::move(output).value());
   }
   auto server = usb::UsbipServer::open(device, {.address = options.address, .port = options.port});
   if (!server) {
-    return complain(server.error(), kExitTrouble);
+    return report_error(server.error(), kExitTrouble);
   }
-  say_what_to_do(**server, options);
+  print_instructions(**server, options);
 
   // Set by Ctrl-C, or when the kernel refused the device.
   const std::atomic<bool>& interrupted = scene::catch_interrupts();

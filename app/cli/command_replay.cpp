@@ -8,8 +8,8 @@
 
 #include "bag/read_bag.h"
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/file_options.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
@@ -71,12 +71,12 @@ void print_comparison(const std::string& file, const session::TrajectoryComparis
 /// Touches a scene along the probe positions of a trajectory file.
 int replay_probe(const ReplayOptions& options) {
   if (!options.page.empty()) {
-    return complain(
+    return report_error(
         {"--page requires a recording. Convert the trajectory first with --record FILE."},
         kExitBadInput);
   }
   if (options.scene.empty()) {
-    return complain(
+    return report_error(
         {options.files.front() + " is not a recording. A trajectory requires --scene; add it."},
         kExitBadInput);
   }
@@ -85,14 +85,14 @@ int replay_probe(const ReplayOptions& options) {
   form.seconds = options.time == "ms" ? 1e-3 : 1;
   const auto replay =
       session::replay_trajectory_file(options.files.front(), form, options.frame, options.scene);
-  if (!replay) return complain(replay.error(), kExitBadInput);
+  if (!replay) return report_error(replay.error(), kExitBadInput);
   print_comparison(options.files.front(), replay->compared, replay->felt.info.scene,
                    form.has_forces());
   if (options.record.empty()) return kExitDone;
   if (auto written = session::write_recording(options.record, replay->felt.info, replay->felt.ticks,
                                               options.force);
       !written) {
-    return complain(written.error(), kExitTrouble);
+    return report_error(written.error(), kExitTrouble);
   }
   return kExitDone;
 }
@@ -101,28 +101,28 @@ int replay_probe(const ReplayOptions& options) {
 int replay_a_bag(const ReplayOptions& options) {
   const std::string& file = options.files.front();
   if (options.scene.empty())
-    return complain({file + " is a bag, which requires --scene. Add it."}, kExitBadInput);
+    return report_error({file + " is a bag, which requires --scene. Add it."}, kExitBadInput);
   if (!options.page.empty()) {
-    return complain({"--page requires a recording. Convert the bag first with --record FILE."},
-                    kExitBadInput);
+    return report_error({"--page requires a recording. Convert the bag first with --record FILE."},
+                        kExitBadInput);
   }
   session::BagTopics topics = options.bag;
   topics.axes = options.axes == "omni" ? bag::BagAxes::kOmni : bag::BagAxes::kPlain;
   const auto replayed = session::replay_bag(file, topics, options.scene);
-  if (!replayed) return complain(replayed.error(), kExitBadInput);
+  if (!replayed) return report_error(replayed.error(), kExitBadInput);
   const session::TrajectoryReplay& replay = replayed->replay;
   print_comparison(file, replay.compared, replay.felt.info.scene, replayed->has_forces);
   if (replayed->has_forces)
     scene::print_format("Largest force error %.3g N.\n", replayed->error_max);
   if (!options.csv.empty()) {
     if (auto written = session::write_csv(replay.felt, options.csv); !written) {
-      return complain(written.error(), kExitTrouble);
+      return report_error(written.error(), kExitTrouble);
     }
   }
   if (options.record.empty()) return kExitDone;
   auto written =
       session::write_recording(options.record, replay.felt.info, replay.felt.ticks, options.force);
-  return written ? kExitDone : complain(written.error(), kExitTrouble);
+  return written ? kExitDone : report_error(written.error(), kExitTrouble);
 }
 
 /// Prints how the forces of one hand compare with the recorded ones.
@@ -166,10 +166,10 @@ int replay_recordings(const ReplayOptions& options) {
   }
   plan.write("--page", options.page, output::kWebPage);
   plan.write("--csv", options.csv, output::kTable);
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   if (from_bag) return replay_a_bag(options);
   if (!options.csv.empty()) {
-    return complain(
+    return report_error(
         {"--csv requires a bag. For other files use --record FILE, then `thimble export`."},
         kExitBadInput);
   }
@@ -177,10 +177,10 @@ int replay_recordings(const ReplayOptions& options) {
   std::vector<session::Recording> recordings;
   for (const std::string& file : options.files) {
     auto recording = session::read_recording(file);
-    if (!recording) return complain(recording.error(), kExitBadInput);
+    if (!recording) return report_error(recording.error(), kExitBadInput);
     if (options.verify) {
       if (auto same = session::check_repeatable(*recording, options.scene); !same) {
-        return complain({"--verify: " + same.error().message}, kExitBadInput);
+        return report_error({"--verify: " + same.error().message}, kExitBadInput);
       }
     }
     recordings.push_back(std::move(recording).value());
@@ -190,11 +190,11 @@ int replay_recordings(const ReplayOptions& options) {
     plan.write("--record", session::file_of_arm(options.record, recording.info.arm_in_scene),
                session::kRecordingOutput, options.force);
   }
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   report::ReplayPage page;
   auto replays =
       session::replay_together(recordings, options.scene, options.page.empty() ? nullptr : &page);
-  if (!replays) return complain(replays.error(), kExitBadInput);
+  if (!replays) return report_error(replays.error(), kExitBadInput);
   bool differs = false, unexplained = false;
   for (std::size_t i = 0; i < replays->size(); ++i) {
     session::Replay& replay = (*replays)[i];
@@ -210,13 +210,13 @@ int replay_recordings(const ReplayOptions& options) {
     if (auto written =
             session::write_recording(file, replay.felt.info, replay.felt.ticks, options.force);
         !written) {
-      return complain(written.error(), kExitTrouble);
+      return report_error(written.error(), kExitTrouble);
     }
   }
   if (!options.page.empty()) {
     if (auto written = page.write(*replays, options.page); !written) {
-      return complain({options.page + " was not written: " + written.error().message},
-                      kExitTrouble);
+      return report_error({options.page + " was not written: " + written.error().message},
+                          kExitTrouble);
     }
     session::print(stdout, "Page: {}\n", options.page);
   }

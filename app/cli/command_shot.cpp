@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/file_options.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "files/scene_inputs.h"
 #include "log/printed_text.h"
@@ -75,7 +75,7 @@ bool is_png(const std::filesystem::path& file) {
 
 /// Returns what is wrong with the names of the pictures, or with a film's pace; empty if nothing
 /// is.
-std::string wrong_ending(const ShotOptions& options) {
+std::string output_error(const ShotOptions& options) {
   if (!options.out.empty() && !is_png(options.out)) {
     return "--out: expected a file name that ends in .png, found " + options.out + ".";
   }
@@ -98,7 +98,7 @@ int write_animation(const std::vector<view::Picture>& pictures, const ShotOption
   const bool film = view::is_film(options.animate);
   const auto written = film ? view::write_film(pictures, frame_time, options.animate)
                             : view::write_animated_png(pictures, frame_time, options.animate);
-  if (!written) return complain(written.error(), kExitTrouble);
+  if (!written) return report_error(written.error(), kExitTrouble);
   std::error_code unknown;
   const std::uintmax_t bytes = std::filesystem::file_size(options.animate, unknown);
   session::print(stdout, "Animation: {} ({}, {} pictures of {} x {}, {:.3g} s{})\n",
@@ -110,7 +110,7 @@ int write_animation(const std::vector<view::Picture>& pictures, const ShotOption
 }
 
 /// Returns an error if the times to be drawn are outside of the scene's duration; empty if not.
-std::string beyond_the_end(const ShotOptions& options) {
+std::string time_error(const ShotOptions& options) {
   const auto scene = scene::load_scene(options.scene, {.arm = options.arm_file});
   if (!scene) return {};  // the caller that plays the scene reports the error
   for (const auto& [option, time] :
@@ -125,21 +125,21 @@ std::string beyond_the_end(const ShotOptions& options) {
 int take_shot(const ShotOptions& options) {
   view::ShotChoice choice;
   if (!read_size(options.size, choice.width, choice.height)) {
-    return complain(
+    return report_error(
         {"--size: expected WIDTHxHEIGHT of 64 to 8192 pixels, found " + options.size + "."},
         kExitBadInput);
   }
   if (options.out.empty() && options.animate.empty()) {
-    return complain(
+    return report_error(
         {"--out FILE.png or --animate FILE (.mp4, .gif or .png) is missing. Add one of them."},
         kExitBadInput);
   }
-  for (const std::string& wrong : {wrong_ending(options), beyond_the_end(options)}) {
-    if (!wrong.empty()) return complain({wrong}, kExitBadInput);
+  for (const std::string& wrong : {output_error(options), time_error(options)}) {
+    if (!wrong.empty()) return report_error({wrong}, kExitBadInput);
   }
   if (view::is_film(options.animate)) {
     if (const auto found = view::find_ffmpeg(); !found) {
-      return complain(found.error(), kExitTrouble);
+      return report_error(found.error(), kExitTrouble);
     }
   }
   output::OutputPlan plan;
@@ -147,8 +147,8 @@ int take_shot(const ShotOptions& options) {
   for (const auto& file : scene::scene_inputs(options.scene)) plan.read(file);
   plan.write("--out", options.out, output::kPng);
   plan.write("--animate", options.animate,
-             view::is_film(options.animate) ? output::kFilm : output::kPng);
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+             view::is_film(options.animate) ? output::kAnimation : output::kPng);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   choice.paint.shading =
       options.shading == "gouraud" ? view::Shading::kGouraud : view::Shading::kPhong;
   choice.paint.edges = options.edges == "on"    ? view::Edges::kOn
@@ -172,7 +172,7 @@ int take_shot(const ShotOptions& options) {
     at = *options.at;
   } else {
     const auto found = view::strongest_moment(options.scene, session);
-    if (!found) return complain(found.error(), kExitBadInput);
+    if (!found) return report_error(found.error(), kExitBadInput);
     at = *found;
   }
   const bool animated = !options.animate.empty();
@@ -182,11 +182,11 @@ int take_shot(const ShotOptions& options) {
   for (int i = 1; animated && i < pictures_wanted; ++i) times.push_back(at + i / options.pace);
   session.duration = times.back() + 0.1;
   auto played = view::PlayedScene::open(options.scene, session);
-  if (!played) return complain(played.error(), kExitBadInput);
+  if (!played) return report_error(played.error(), kExitBadInput);
   const auto context = view::OffscreenContext::open();
-  if (!context) return complain(context.error(), kExitTrouble);
+  if (!context) return report_error(context.error(), kExitTrouble);
   auto programs = view::ScenePrograms::make();
-  if (!programs) return complain(programs.error(), kExitTrouble);
+  if (!programs) return report_error(programs.error(), kExitTrouble);
   view::ShotPainter painter((*played)->drawn(), choice, std::move(programs).value());
   std::vector<view::Picture> pictures;
   (*played)->play(times, [&](view::DrawnMoment& moment, const view::Plots& plots) {
@@ -200,7 +200,7 @@ int take_shot(const ShotOptions& options) {
     const auto written =
         view::write_png(pictures.front(), options.out,
                         options.all_colours ? view::PngColours::kAll : view::PngColours::k256);
-    if (!written) return complain(written.error(), kExitTrouble);
+    if (!written) return report_error(written.error(), kExitTrouble);
     scene::print_format("Picture: %s\n", options.out.c_str());
   }
   return animated ? write_animation(pictures, options) : kExitDone;

@@ -8,8 +8,8 @@
 #include <system_error>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/file_options.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
@@ -55,18 +55,18 @@ int tune_scene(const TuneCommand& command) {
   plan.read(command.scene);
   plan.read(command.arm_file);
   plan.write_folder("--out", command.folder, {"figures.json"});
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto scene = scene::load_scene(command.scene, {.arm = command.arm_file});
-  if (!scene) return complain(scene.error(), kExitBadInput);
+  if (!scene) return report_error(scene.error(), kExitBadInput);
   if (!scene->arms.front().arm.can_simulate) {
-    return complain(
+    return report_error(
         {"The arm file has no section `simulation` with mass, friction and hand. Add one, as "
          "in app/arms/vintage_phantom.yaml."},
         kExitBadInput);
   }
   // Errors of a mesh also apply here.
   const auto objects = scene::SceneObjects::build(*scene);
-  if (!objects) return complain(objects.error(), kExitBadInput);
+  if (!objects) return report_error(objects.error(), kExitBadInput);
   for (const std::string& note : (*objects)->notes())
     scene::print_format("Note      %s\n", note.c_str());
   stability::TuneOptions options{.period_spread = 1e-6 * command.spread_us};
@@ -79,19 +79,19 @@ int tune_scene(const TuneCommand& command) {
     constexpr double kDuration = 5;  // s [chosen]
     const auto ages =
         ros2::measure_ros_latency(command.scene, command.arm_file, command.domain, kDuration);
-    if (!ages) return complain(ages.error(), kExitTrouble);
+    if (!ages) return report_error(ages.error(), kExitTrouble);
     options.topics = stability::AnswerAges{.median = 1e-9 * ages->percentile(0.5),
                                            .most = 1e-9 * ages->percentile(0.99)};
   }
   const auto tuned = stability::tune(*scene, options);
-  if (!tuned) return complain(tuned.error(), kExitBadInput);
+  if (!tuned) return report_error(tuned.error(), kExitBadInput);
   scene::print_format("%s\n%s", tuned->text.c_str(), report::figure_table(tuned->figures).c_str());
   if (!command.folder.empty()) {
     std::error_code status;
     std::filesystem::create_directories(command.folder, status);
     const std::filesystem::path file = std::filesystem::path(command.folder) / "figures.json";
     if (const auto written = report::write_figures(tuned->figures, file); !written) {
-      return complain(written.error(), kExitTrouble);
+      return report_error(written.error(), kExitTrouble);
     }
     scene::print_format("Written to %s.\n", file.c_str());
   }

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/file_options.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
@@ -26,7 +26,7 @@ struct TwinCommand {
   std::string arm_file;
   std::string output;
   twin::TwinOptions options;
-  double fit_least = 0;
+  double min_fit = 0;
 };
 
 int compare(const TwinCommand& command) {
@@ -34,23 +34,23 @@ int compare(const TwinCommand& command) {
   plan.read(command.recording);
   plan.read(command.arm_file);
   plan.write_folder("--output", command.output, {"figures.json"});
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto recording = session::read_recording(command.recording);
-  if (!recording) return complain(recording.error(), kExitBadInput);
+  if (!recording) return report_error(recording.error(), kExitBadInput);
   const auto file = scene::load_arm(command.arm_file);
-  if (!file) return complain(file.error(), kExitBadInput);
+  if (!file) return report_error(file.error(), kExitBadInput);
   const auto result = twin::compare_twin(*recording, *file, command.options);
-  if (!result) return complain(result.error(), kExitBadInput);
+  if (!result) return report_error(result.error(), kExitBadInput);
   scene::print_format("Recording: %s, of the arm %s (%s). Twin: the simulated arm of %s.\n",
                       command.recording.c_str(), recording->info.arm.c_str(),
                       recording->info.device.c_str(), command.arm_file.c_str());
-  for (const std::string& sentence : result->comparison.told)
+  for (const std::string& sentence : result->comparison.messages)
     scene::print_format("%s\n", sentence.c_str());
   scene::print_format("%s", twin::twin_table(result->comparison).c_str());
   for (const std::string& sentence : twin::never_seen()) {
     scene::print_format("Not tested by motion: %s.\n", sentence.c_str());
   }
-  auto figures = twin::twin_figures(result->comparison, command.fit_least);
+  auto figures = twin::twin_figures(result->comparison, command.min_fit);
   scene::print_format("\nForces, RMS over segments of 60 ms:\n%s",
                       twin::force_table(result->forces).c_str());
   for (session::Figure& figure : twin::force_figures(result->forces))
@@ -66,7 +66,7 @@ int compare(const TwinCommand& command) {
   }
   if (!command.output.empty()) {
     const auto written = twin::write_twin(*result, figures, file->name, command.output);
-    if (!written) return complain(written.error(), kExitTrouble);
+    if (!written) return report_error(written.error(), kExitTrouble);
     scene::print_format("Figures and pictures: %s\n", command.output.c_str());
   }
   const std::string unmet = report::unmet_line(figures);
@@ -89,7 +89,7 @@ void add_twin_command(CLI::App& app, int& exit_code) {
       ->check(CLI::NonNegativeNumber);
   sub->add_option("--until", command->options.span.until, "End of the comparison, s")
       ->check(CLI::NonNegativeNumber);
-  sub->add_option("--fit-least", command->fit_least, "Smallest accepted fit of each axis, %")
+  sub->add_option("--fit-least", command->min_fit, "Smallest accepted fit of each axis, %")
       ->check(CLI::Range(0.0, 100.0));
   sub->add_option("--output", command->output, "Write figures.json and pictures to this folder")
       ->option_text("DIR");

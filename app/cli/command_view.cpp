@@ -11,15 +11,15 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/parts/part.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "report/html/page_libraries.h"
-#include "share/knob_order.h"
 #include "share/run_attachment.h"
 #include "share/shared_memory.h"
 #include "share/steer/save_knobs.h"
+#include "share/turn_knob.h"
 #include "signals.h"
 #include "thimble/scene/shipped_files.h"
 #include "web/web_server.h"
@@ -29,7 +29,7 @@ namespace {
 
 // Maximum time to wait for the next run when a run ends: it is already prepared, and only the
 // recording has to be closed. Chosen.
-constexpr std::chrono::seconds kNextRunMost{10};
+constexpr std::chrono::seconds kNextRunTimeout{10};
 
 struct ViewOptions {
   std::vector<std::string> shown;  // a run, or recordings
@@ -51,11 +51,11 @@ struct ViewOptions {
 
   /// Returns the name of the run; empty: the newest.
   std::string run() const { return shown.empty() ? "" : shown.front(); }
-  bool asks() const {
+  bool has_requests() const {
     return !turn.empty() || pause || resume || stop || !record.empty() || record_stop || restart ||
            steps > 0 || speed || !loop.empty() || !scene.empty() || save_knobs;
   }
-  bool is_for_runs() const { return list || text || web || follow || asks(); }
+  bool is_for_runs() const { return list || text || web || follow || has_requests(); }
 };
 
 int list_runs() {
@@ -73,7 +73,7 @@ int list_runs() {
     for (std::size_t i = 0; i < scene.knobs.size(); ++i) {
       const session::SharedScene::Knob& knob = scene.knobs[i];
       scene::print_format("    %s = %.4g %s (%.4g to %.4g)\n", knob.name.c_str(),
-                          (*reader)->knob(i), knob.unit.c_str(), knob.least, knob.most);
+                          (*reader)->knob(i), knob.unit.c_str(), knob.min, knob.max);
     }
   }
   if (runs.empty())
@@ -82,7 +82,8 @@ int list_runs() {
 }
 
 /// Sends the requests that change the course of the run: speed, loop, steps, scene, restart.
-driver::Result<void> ask_course(session::SharedReader& reader, const ViewOptions& options) {
+driver::Result<void> send_control_requests(session::SharedReader& reader,
+                                           const ViewOptions& options) {
   if (options.speed) {
     if (auto asked = reader.ask_speed(*options.speed); !asked) return asked;
   }
@@ -110,18 +111,18 @@ driver::Result<void> ask_course(session::SharedReader& reader, const ViewOptions
 int save(const session::SharedReader& reader, const ViewOptions& options) {
   const auto saved =
       session::save_knobs(reader, {.file = options.save_as, .over = options.overwrite});
-  if (!saved) return complain(saved.error(), kExitBadInput);
+  if (!saved) return report_error(saved.error(), kExitBadInput);
   scene::print_format("%s\n", saved->text().c_str());
   return kExitDone;
 }
 
 /// Sends all requests to a run, once.
-driver::Result<void> ask_once(session::SharedReader& reader, const ViewOptions& options) {
+driver::Result<void> send_once(session::SharedReader& reader, const ViewOptions& options) {
   for (const std::string& order : options.turn) {
     if (auto turned = session::turn_knob(reader, order); !turned) return turned;
   }
   if (options.pause || options.resume) reader.ask_pause(options.pause);
-  if (auto asked = ask_course(reader, options); !asked) return asked;
+  if (auto asked = send_control_requests(reader, options); !asked) return asked;
   const bool taken = (options.record.empty() || reader.ask_record(options.record)) &&
                      (!options.record_stop || reader.ask_record_stop());
   if (!taken) return driver::Error{"Another viewer is sending a request; try again."};
@@ -130,20 +131,22 @@ driver::Result<void> ask_once(session::SharedReader& reader, const ViewOptions& 
 }
 
 /// Sends all requests. If the run ends meanwhile, sends them once more to the next run.
-int ask(const ViewOptions& options) {
-  const auto latest = std::chrono::steady_clock::now() + kNextRunMost;
+int send_requests(const ViewOptions& options) {
+  const auto latest = std::chrono::steady_clock::now() + kNextRunTimeout;
   std::string run = options.run();
   for (bool first = true;; first = false) {
     auto attached = session::SharedReader::attach(run);
     if (!attached && options.stop && !first) return kExitDone;  // the run has already ended
-    if (!attached) return complain(attached.error(), kExitBadInput);
+    if (!attached) return report_error(attached.error(), kExitBadInput);
     session::SharedReader& reader = **attached;
     run = reader.name();
-    const auto asked = reader.heard() ? ask_once(reader, options) : reader.heard();
-    const auto heard = reader.heard();
-    if (heard && !asked) return complain(asked.error(), kExitBadInput);
+    const auto asked =
+        reader.check_accepted() ? send_once(reader, options) : reader.check_accepted();
+    const auto heard = reader.check_accepted();
+    if (heard && !asked) return report_error(asked.error(), kExitBadInput);
     if (heard) return options.save_knobs ? save(reader, options) : kExitDone;
-    if (std::chrono::steady_clock::now() >= latest) return complain(heard.error(), kExitBadInput);
+    if (std::chrono::steady_clock::now() >= latest)
+      return report_error(heard.error(), kExitBadInput);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
 }
@@ -169,10 +172,10 @@ void print_line(const session::SharedReader& reader) {
 }
 
 /// Prints the state of a run once a second, without a window.
-int tell(const ViewOptions& options) {
+int print_states(const ViewOptions& options) {
   const std::atomic<bool>& stop = scene::catch_interrupts();
   session::RunAttachment runs(options.run());
-  std::string told;
+  std::string last_notice;
   auto next_line = std::chrono::steady_clock::now();
   const auto end = next_line + std::chrono::duration<double>(options.seconds);
   while (!stop.load()) {
@@ -180,21 +183,21 @@ int tell(const ViewOptions& options) {
     if (runs.step()) {
       scene::print_format("Watching %s: %s\n", runs.name().c_str(),
                           runs.reader()->scene().name.c_str());
-      told.clear();
+      last_notice.clear();
     }
     std::string notice = runs.notice();
     if (notice.empty() && runs.reader() != nullptr) notice = runs.reader()->notice();
     const bool ended =
         runs.reader() != nullptr && runs.reader()->state() == session::RunState::kEnded;
     const auto now = std::chrono::steady_clock::now();
-    if (runs.reader() != nullptr && told != notice && ended) print_line(*runs.reader());
+    if (runs.reader() != nullptr && last_notice != notice && ended) print_line(*runs.reader());
     if (runs.reader() != nullptr && !ended && now >= next_line) {
       print_line(*runs.reader());
       next_line = now + std::chrono::seconds(1);
     }
-    if (!notice.empty() && notice != told) scene::print_format("%s\n", notice.c_str());
+    if (!notice.empty() && notice != last_notice) scene::print_format("%s\n", notice.c_str());
     std::fflush(stdout);
-    told = notice;
+    last_notice = notice;
     if (runs.over() && !options.follow) return kExitDone;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
@@ -204,15 +207,15 @@ int tell(const ViewOptions& options) {
 /// Shows a run in browsers on this computer.
 int serve(const ViewOptions& options) {
   if (auto libraries = report::read_page_libraries(); !libraries) {
-    return complain(libraries.error(), kExitBadInput);
+    return report_error(libraries.error(), kExitBadInput);
   }
   const std::atomic<bool>& stop = scene::catch_interrupts();
   session::RunAttachment runs(options.run());
   const session::SharedReader* watched = nullptr;
   auto server = web::WebServer::listen(runs, options.port);
-  if (!server) return complain(server.error(), kExitBadInput);
+  if (!server) return report_error(server.error(), kExitBadInput);
   scene::print_format("Open %s\n", (*server)->address().c_str());
-  std::string told;
+  std::string last_notice;
   const auto end =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(options.seconds);
   int exit_code = kExitInterrupted;
@@ -223,9 +226,9 @@ int serve(const ViewOptions& options) {
       scene::print_format("Watching %s: %s\n", runs.name().c_str(), watched->scene().name.c_str());
     }
     const std::string notice = runs.notice();
-    if (!notice.empty() && notice != told) scene::print_format("%s\n", notice.c_str());
+    if (!notice.empty() && notice != last_notice) scene::print_format("%s\n", notice.c_str());
     std::fflush(stdout);
-    told = notice;
+    last_notice = notice;
     const bool late = options.seconds > 0 && std::chrono::steady_clock::now() >= end;
     if ((!runs.over() || options.follow) && !late) continue;
     exit_code = kExitDone;
@@ -244,20 +247,21 @@ bool is_recording(const std::string& shown) {
 int view_recordings(const ViewOptions& options, const ShowWindow& show_window) {
   for (const std::string& file : options.shown) {
     if (is_recording(file)) continue;
-    return complain({file + " is the name of a run. Name either one run or recordings."},
-                    kExitBadInput);
+    return report_error({file + " is the name of a run. Name either one run or recordings."},
+                        kExitBadInput);
   }
   if (options.is_for_runs()) {
-    return complain(
+    return report_error(
         {options.shown.front() +
          " is a recording, so options that control a run cannot be used. To write it as "
          "text, use `thimble export`."},
         kExitBadInput);
   }
   if (!show_window.recordings) {
-    return complain({"The window is not installed: " + how_to_get(kViewer) +
-                     "; or write a page for a browser: `thimble replay FILE --page FILE.html`."},
-                    kExitBadInput);
+    return report_error(
+        {"The window is not installed: " + how_to_get(kViewer) +
+         "; or write a page for a browser: `thimble replay FILE --page FILE.html`."},
+        kExitBadInput);
   }
   return show_window.recordings(options.shown, options.seconds);
 }
@@ -267,16 +271,17 @@ int show(const ViewOptions& options, const ShowWindow& show_window) {
     return view_recordings(options, show_window);
   }
   if (options.shown.size() > 1) {
-    return complain({"RUN: expected one run per window. Open a window for each."}, kExitBadInput);
+    return report_error({"RUN: expected one run per window. Open a window for each."},
+                        kExitBadInput);
   }
   if (options.list) return list_runs();
-  if (options.asks()) return ask(options);
-  if (options.text) return tell(options);
+  if (options.has_requests()) return send_requests(options);
+  if (options.text) return print_states(options);
   if (options.web) return serve(options);
   if (!show_window.runs) {
-    return complain({"The window is not installed: " + how_to_get(kViewer) +
-                     "; or use `thimble view --text` or `thimble view --web`."},
-                    kExitBadInput);
+    return report_error({"The window is not installed: " + how_to_get(kViewer) +
+                         "; or use `thimble view --text` or `thimble view --web`."},
+                        kExitBadInput);
   }
   session::RunAttachment runs(options.run());
   return show_window.runs(runs, options.seconds);
@@ -320,12 +325,12 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
       ->excludes(pause)
       ->group(kControl);
   command->add_option("--step", options->steps, "Advance a paused run by N ticks (simulated time)")
-      ->check(CLI::Range(std::uint64_t{1}, session::kStepsMost))
+      ->check(CLI::Range(std::uint64_t{1}, session::kStepsMax))
       ->group(kControl);
   command
       ->add_option("--speed", options->speed,
                    "Speed relative to real time; results stay bit-identical")
-      ->check(CLI::Range(session::kSpeedLeast, session::kSpeedMost))
+      ->check(CLI::Range(session::kSpeedMin, session::kSpeedMax))
       ->group(kControl);
   CLI::Option* restart =
       command->add_flag("--restart", options->restart, "Restart the run from its first tick")

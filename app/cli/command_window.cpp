@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "output/output_plan.h"
 #include "view/playback/recording_view.h"
 #include "view/window.h"
@@ -18,14 +18,14 @@ void add_window_command(CLI::App& app, int& exit_code) {
     choice->seconds = seconds;
     output::OutputPlan plan;
     plan.write("--picture", choice->last_picture, output::kPng);
-    if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+    if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
     const auto shown = view::show_window(runs, *choice);
-    return shown ? kExitDone : complain(shown.error(), kExitTrouble);
+    return shown ? kExitDone : report_error(shown.error(), kExitTrouble);
   };
   show.recordings = [choice](const std::vector<std::string>& files, double seconds) -> int {
     choice->seconds = seconds;
     if (choice->felt.sound || choice->felt.rumble) {
-      return complain(
+      return report_error(
           {"--sound and --rumble require a run. For the sound of a recording, use `thimble "
            "export FILE --sound FILE.wav`."},
           kExitBadInput);
@@ -33,11 +33,11 @@ void add_window_command(CLI::App& app, int& exit_code) {
     output::OutputPlan plan;
     for (const std::string& file : files) plan.read(file);
     plan.write("--picture", choice->last_picture, output::kPng);
-    if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+    if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
     const auto recording = view::RecordingView::open({files.begin(), files.end()});
-    if (!recording) return complain(recording.error(), kExitBadInput);
+    if (!recording) return report_error(recording.error(), kExitBadInput);
     const auto shown = view::show_recording(**recording, files.front(), *choice);
-    return shown ? kExitDone : complain(shown.error(), kExitTrouble);
+    return shown ? kExitDone : report_error(shown.error(), kExitTrouble);
   };
   add_view_command(app, exit_code, show);
   CLI::App* command = app.get_subcommand("view");

@@ -47,16 +47,16 @@ int main(int argc, char** argv) {
   if (!arm.device().activate()) return 1;
   auto law = [&](const DeviceState& state) noexcept { return object.update(state); };
   int touching = 0, last = -1, triangles = 0;
-  double most = 0;
+  double max_force = 0;
   auto watch = [&](const TickRecord& tick) noexcept {
     if (!tick.in_contact) return;
     ++touching;
     triangles += tick.feature != last;
     last = tick.feature;
-    most = std::max(most, Eigen::Map<const Eigen::Vector3d>(tick.f_sent_W.data()).norm());
+    max_force = std::max(max_force, Eigen::Map<const Eigen::Vector3d>(tick.f_sent_W.data()).norm());
   };
   arm.run(1.5, law, watch);
   std::printf("%zu triangles; touched for %d ms over %d of them, at most %.2f N.\n",
-              mesh->triangles.size(), touching, triangles, most);
+              mesh->triangles.size(), touching, triangles, max_force);
   return touching > 0 ? 0 : 1;
 }

@@ -23,8 +23,8 @@ class Hum {
     double amplitude = 2e-4;  // m
     double frequency = 100;   // Hz
     void read(render::SettingsReader& reader, const render::EffectContext&) {
-      reader.number("amplitude", amplitude, {.unit = "m", .least = 0, .most = 0.001});
-      reader.number("frequency", frequency, {.unit = "Hz", .least = 1, .most = 400});
+      reader.number("amplitude", amplitude, {.unit = "m", .min = 0, .max = 0.001});
+      reader.number("frequency", frequency, {.unit = "Hz", .min = 1, .max = 400});
     }
   };
   Hum(const Settings& settings, const render::EffectContext&) : settings_(settings) {}
@@ -68,14 +68,14 @@ int main() {
   thimble::scene::SimulatedDevice& arm = **opened;
   if (!arm.device().activate()) return 1;
   auto law = [&](const DeviceState& state) noexcept { return (*object)->update(state); };
-  double least = 1e9, most = 0;
+  double min_force = 1e9, max_force = 0;
   auto watch = [&](const TickRecord& tick) noexcept {
     if (tick.tick < 800) return;  // from then on the hand is at rest
-    least = std::min(least, tick.f_sent_W[2]);
-    most = std::max(most, tick.f_sent_W[2]);
+    min_force = std::min(min_force, tick.f_sent_W[2]);
+    max_force = std::max(max_force, tick.f_sent_W[2]);
   };
   arm.run(1.0, law, watch);
-  std::printf("The hand is at rest, and the force oscillates between %.2f and %.2f N.\n", least,
-              most);
-  return most - least > 0.1 ? 0 : 1;
+  std::printf("The hand is at rest, and the force oscillates between %.2f and %.2f N.\n", min_force,
+              max_force);
+  return max_force - min_force > 0.1 ? 0 : 1;
 }

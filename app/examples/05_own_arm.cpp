@@ -50,15 +50,15 @@ class Line final : public driver::Transport {
   }
   driver::TransportStatus write(std::span<const std::byte> report) noexcept override {
     std::memcpy(mA_.data(), report.data(), sizeof mA_);
-    most_mA_ = std::max<int>(most_mA_, mA_[2]);
+    max_mA_ = std::max<int>(max_mA_, mA_[2]);
     return driver::TransportStatus::kOk;
   }
-  int most_mA() const { return most_mA_; }
+  int max_mA() const { return max_mA_; }
 
  private:
   const driver::Clock& clock_;
   std::array<std::int16_t, 3> mA_{};
-  int most_mA_ = 0;
+  int max_mA_ = 0;
 };
 
 int main() {
@@ -88,11 +88,11 @@ int main() {
     if (state.p_WT.z() < 0) command.f_T_W.z() = -500 * state.p_WT.z();
     return command;
   };
-  auto nobody = [](const driver::TickRecord&) noexcept {};
+  auto ignore_ticks = [](const driver::TickRecord&) noexcept {};
   const std::atomic<bool> stop{false};
-  driver::run_servo(**device, clock, driver::ForceLaw(wall), driver::TickSink(nobody),
+  driver::run_servo(**device, clock, driver::ForceLaw(wall), driver::TickSink(ignore_ticks),
                     {.period_ns = 1'000'000, .ticks = 2000}, stop);
   // A depth of 6.28 mm at 500 N/m gives 3.14 N. The gate limits it to 3 N: 30 mN m, 1.5 A.
-  std::printf("Largest current of the gantry's motor: %d mA.\n", seen.most_mA());
-  return seen.most_mA() == 1500 ? 0 : 1;
+  std::printf("Largest current of the gantry's motor: %d mA.\n", seen.max_mA());
+  return seen.max_mA() == 1500 ? 0 : 1;
 }

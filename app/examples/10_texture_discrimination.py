@@ -69,7 +69,7 @@ def main(folder):
         f"{staircase.threshold:.3f} of the standard."
     )
 
-    stimuli = experiment.ConstantStimuli(np.linspace(0.4, 1.6, 7), 16, says="rougher", seed=2)
+    stimuli = experiment.ConstantStimuli(np.linspace(0.4, 1.6, 7), 16, answer_key="rougher", seed=2)
     with experiment.Session(folder / "constant.jsonl", stimuli, seed=2, about={"subject": "simulated"}) as session:
         session.run(present)
     curve = stimuli.fit(shape="probit")

@@ -9,9 +9,9 @@ import struct
 import sys
 import zlib
 
-MEAN_MOST = 2.5  # of 255, mean over all pixels; edges of another version: below 1
+MEAN_MAX = 2.5  # of 255, mean over all pixels; edges of another version: below 1
 OFF = 40  # of 255: a pixel that differs
-OFF_SHARE_MOST = 0.01  # of all pixels
+OFF_SHARE_MAX = 0.01  # of all pixels
 
 
 def pixels(path):
@@ -60,7 +60,7 @@ def main():
              for one, other in zip(row, others)]
     mean = sum(apart) / len(apart)
     off = sum(one > OFF for one in apart) / len(apart)
-    near = mean <= MEAN_MOST and off <= OFF_SHARE_MOST
+    near = mean <= MEAN_MAX and off <= OFF_SHARE_MAX
     print(f"{'the same' if near else 'another picture'}: {mean:.2f} of 255 apart on the whole, {100 * off:.2f} % of it off")
     return 0 if near else 1
 

@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "ros2/ros_words.h"
+#include "ros2/ros_option_strings.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::cli {
@@ -10,7 +10,7 @@ namespace thimble::cli {
 /// The arguments --ros2... of a command.
 struct RosArguments {
   bool asked = false;
-  ros2::RosWords words;
+  ros2::RosOptionStrings words;
   ros2::RosOptions options;  ///< The parsed options; see check_ros_arguments.
 };
 

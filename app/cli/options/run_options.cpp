@@ -81,7 +81,8 @@ driver::Result<void> check_run_options(RunOptions& options) {
   return {};
 }
 
-driver::Result<void> check_course(const RunOptions& options, const session::RunArms& arms) {
+driver::Result<void> check_restart_options(const RunOptions& options,
+                                           const session::RunArms& arms) {
   const char* asked = options.loop                     ? "--loop"
                       : options.reload.value_or(false) ? "--reload"
                       : options.speed                  ? "--speed"
@@ -143,7 +144,7 @@ session::SessionOptions session_options(const RunOptions& options, const session
 
 session::ViewerChoice viewer_choice(const RunOptions& options) {
   const bool asked = options.for_a_person();
-  if (asked && !has_window() && scene::talk() != scene::Talk::kQuiet) {
+  if (asked && !has_window() && scene::verbosity() != scene::Verbosity::kQuiet) {
     scene::terminal().info(
         "The window is not installed: {}; `thimble view --text` prints the state of the run.",
         how_to_get(kViewer));
@@ -218,7 +219,7 @@ void add_time_options(CLI::App& command, RunOptions& options) {
       ->check(CLI::IsMember({"virtual", "paced", "wall"}))
       ->group(kTime);
   command.add_option("--speed", options.speed, "Speed relative to real time (default 1)")
-      ->check(CLI::Range(session::kSpeedLeast, session::kSpeedMost))
+      ->check(CLI::Range(session::kSpeedMin, session::kSpeedMax))
       ->group(kTime);
   command.add_flag("--loop", options.loop, "Restart the run whenever it ends")->group(kTime);
   command

@@ -68,7 +68,7 @@ void add_run_options(CLI::App& command, RunOptions& options);
 driver::Result<void> check_run_options(RunOptions& options);
 
 /// Fails if an option that restarts or paces the run cannot be used with these arms.
-driver::Result<void> check_course(const RunOptions& options, const session::RunArms& arms);
+driver::Result<void> check_restart_options(const RunOptions& options, const session::RunArms& arms);
 
 /// Returns the session's options. `options` must outlive them.
 session::SessionOptions session_options(const RunOptions& options, const session::RunArms& arms);

@@ -13,10 +13,10 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/exit_code.h"
 #include "cli/log_options.h"
 #include "cli/parts/part.h"
+#include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "cli/usage/usage_error.h"
 #include "log/console.h"
@@ -70,9 +70,9 @@ int run(int argc, char** argv, const Program& program) {
     scene::write_text(stdout, out.str());
     return kExitDone;
   } catch (const CLI::RuntimeError& error) {  // a part's program did not start
-    return complain({error.what()}, kExitTrouble);
+    return report_error({error.what()}, kExitTrouble);
   } catch (const CLI::ParseError& error) {
-    return complain({usage_error(app, error)}, kExitBadInput);
+    return report_error({usage_error(app, error)}, kExitBadInput);
   }
   return exit_code;
 }
@@ -92,7 +92,7 @@ int with_output(int exit_code) {
 
 int run_program(int argc, char** argv, const Program& program) {
   if (!output::open_standard_streams()) return kExitTrouble;
-  scene::outlive_trouble_with_files();
+  scene::ignore_sigpipe_and_sigxfsz();
   keep_arguments(argv);
   // Catches every exception, so that destructors run and the arm is left with zero force.
   try {

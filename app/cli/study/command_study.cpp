@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/study/end_study.h"
 #include "cli/usage/help_text.h"
 #include "output/output_plan.h"
@@ -17,9 +17,9 @@ namespace {
 int run_study(const studies::Study& study, const std::filesystem::path& folder) {
   output::OutputPlan plan;
   plan.write_folder("--out", folder, {"figures.json"});
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto figures = study.run(folder);
-  if (!figures) return complain(figures.error(), kExitTrouble);
+  if (!figures) return report_error(figures.error(), kExitTrouble);
   return end_study(*figures, folder);
 }
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/file_options.h"
+#include "cli/report_error.h"
 #include "cli/study/end_study.h"
 #include "cli/usage/help_text.h"
 #include "log/printed_text.h"
@@ -35,24 +35,24 @@ int run_accuracy(const AccuracyOptions& options) {
   if (!options.table.empty()) {
     output::OutputPlan plan;
     plan.write("--table", options.table, output::kQualityTable);
-    if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+    if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
     const auto written =
         output::write_file(options.table, output::kQualityTable, studies::quality_table_text());
-    if (!written) return complain(written.error(), kExitTrouble);
+    if (!written) return report_error(written.error(), kExitTrouble);
     scene::print_format("Points for --quality auto: %s\n", options.table.c_str());
     return kExitDone;
   }
   const std::filesystem::path folder = options.out;
   output::OutputPlan plan;
   plan.write_folder("--out", folder, {"figures.json", "index.html"});
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const std::atomic<bool>& stop = scene::catch_interrupts();
   const auto report = studies::study_accuracy({.axes = options.axes,
                                                .count = !options.no_count,
                                                .resume = options.resume,
                                                .folder = folder},
                                               stop);
-  if (!report) return complain(report.error(), kExitBadInput);
+  if (!report) return report_error(report.error(), kExitBadInput);
   if (report->stopped) {
     scene::print_format("Interrupted. To continue, run the same command with --resume.\n");
     return kExitInterrupted;
@@ -91,16 +91,16 @@ int run_gating(const GatingOptions& options) {
   output::OutputPlan plan;
   plan.read(options.scene);
   plan.write_folder("--out", folder, {"figures.json", "gating.txt", "index.html"});
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto report = studies::decide_gating(options.scene, !options.no_count);
-  if (!report) return complain(report.error(), kExitBadInput);
+  if (!report) return report_error(report.error(), kExitBadInput);
   const std::string text = studies::gating_text(*report);
   scene::print_format("%s", text.c_str());
   for (const auto& written :
        {report::write_figures(studies::figures_of(*report), folder / "figures.json"),
         report::write_text(text, folder / "gating.txt"),
         write_gating_runs(options.scene, *report, folder)}) {
-    if (!written) return complain(written.error(), kExitTrouble);
+    if (!written) return report_error(written.error(), kExitTrouble);
   }
   scene::print_format("Written to %s; index.html lists the pages of the runs.\n", folder.c_str());
   return kExitDone;

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/file_options.h"
+#include "cli/report_error.h"
 #include "cli/study/end_study.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
@@ -39,16 +39,16 @@ template <class Run>
 int run_by_sweep(const SweepChoice& choice, const Run& run) {
   const std::atomic<bool>& stop = scene::catch_interrupts();
   const auto team = studies::SweepTeam::join();
-  if (!team) return complain(team.error(), kExitBadInput);
+  if (!team) return report_error(team.error(), kExitBadInput);
   const bool leads = *team == nullptr || (*team)->rank() == 0;
   output::OutputPlan plan;
   if (leads) plan.write_folder("--out", choice.out, {"figures.json"});
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto report = run(
       studies::SweepOptions{
           .folder = choice.out, .jobs = choice.jobs, .resume = choice.resume, .team = team->get()},
       stop);
-  if (!report) return complain(report.error(), kExitBadInput);
+  if (!report) return report_error(report.error(), kExitBadInput);
   if (report->end == studies::SweepEnd::kHelped) return kExitDone;
   if (report->end == studies::SweepEnd::kStopped) {
     scene::print_format("Interrupted. To continue, run the same command with --resume.\n");

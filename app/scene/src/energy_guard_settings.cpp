@@ -76,7 +76,7 @@ driver::EnergyGuardSettings energy_settings(const ArmFile& arm, double rate,
       choice.slope.value_or(stiffness_limit(arm.simulated.plant.viscous, latency_of(times)));
   // Only a ring buffer of torques depends on the delay. A longer delay uses its last entry.
   settings.delay_ticks = static_cast<int>(
-      std::min(std::round(times.delay * rate), double{driver::EnergyGuardSettings::kDelayMost}));
+      std::min(std::round(times.delay * rate), double{driver::EnergyGuardSettings::kDelayMax}));
   return settings;
 }
 

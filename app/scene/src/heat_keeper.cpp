@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void complain_of(const std::string& name) {
+void warn_not_saved(const std::string& name) {
   logger().warn(
       "Cannot save the motor temperatures to {}, so the next run assumes cold motors. Let them "
       "cool before it, and make the folder writable.",
@@ -96,11 +96,11 @@ bool save_heat(const std::string& name, const std::array<double, 3>& heat, doubl
 
 HeatKeeper::HeatKeeper(std::string name, const driver::Device& device)
     : name_(std::move(name)), device_(device) {
-  if (!save_heat(name_, device_.heat().heat(), world_time(), true)) complain_of(name_);
+  if (!save_heat(name_, device_.heat().heat(), world_time(), true)) warn_not_saved(name_);
 }
 
 HeatKeeper::~HeatKeeper() {
-  if (!save_heat(name_, device_.heat().heat(), world_time(), false)) complain_of(name_);
+  if (!save_heat(name_, device_.heat().heat(), world_time(), false)) warn_not_saved(name_);
 }
 
 }  // namespace thimble::scene

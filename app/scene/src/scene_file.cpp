@@ -37,7 +37,7 @@ constexpr double kBandMax = 0.1;                      // m
 constexpr double kDurationMax = 86400;                // s
 constexpr double kRateMin = 10;                       // Hz
 constexpr double kRateMax = 1e5;                      // Hz
-constexpr double kShareBorne =
+constexpr double kStiffnessMargin =
     0.5;  // of the stable stiffness [chosen: hands differ by this factor]
 
 render::ContactChoice read_contact(YamlMap map) {
@@ -143,9 +143,9 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   }
   if (object.paged) {
     const render::ContactChoice& c = object.contact;
-    const bool as_it_is = c.tracker == render::TrackerChoice::kPacked && !c.search && !c.blending &&
-                          !c.normals && !c.curved_depth && !c.crease_angle;
-    if (map.has("contact") && !as_it_is) {
+    const bool uses_defaults = c.tracker == render::TrackerChoice::kPacked && !c.search &&
+                               !c.blending && !c.normals && !c.curved_depth && !c.crease_angle;
+    if (map.has("contact") && !uses_defaults) {
       map.reject(
           "contact",
           "a page file supports only \"tracker: compact\", and stores its creases itself; remove "
@@ -182,20 +182,20 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
 
 /// Returns whether the stiffness of every surface is well within the stable range of the loop, with
 /// one arm.
-bool bears_its_rate(const Scene& scene, const ArmFile& file) {
+bool is_stable_at_rate(const Scene& scene, const ArmFile& file) {
   const device_sim::SimulatedArmSettings& arm = file.simulated;
   const double latency = latency_of(loop_pace(file, scene.rate));
   return std::all_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
     const double held = arm.plant.viscous + arm.hand.damping + object.damping;
     // Written so that NaN counts as unstable.
-    return object.stiffness <= kShareBorne * stiffness_limit(held, latency);
+    return object.stiffness <= kStiffnessMargin * stiffness_limit(held, latency);
   });
 }
 
 /// Returns whether this holds for all arms of the scene.
-bool bears_its_rate(const Scene& scene) {
+bool is_stable_at_rate(const Scene& scene) {
   return std::all_of(scene.arms.begin(), scene.arms.end(),
-                     [&](const SceneArm& one) { return bears_its_rate(scene, one.arm); });
+                     [&](const SceneArm& one) { return is_stable_at_rate(scene, one.arm); });
 }
 
 /// Records a mistake if the period of the loop is so long that the gate of an arm would report a
@@ -296,7 +296,7 @@ driver::Result<Scene> find_and_read_scene(const std::filesystem::path& meant,
 
 driver::Result<Scene> load_scene(const std::filesystem::path& meant, const SceneReading& reading) {
   auto scene = find_and_read_scene(meant, reading);
-  if (!(reading.rate_factor < 1) || (scene && bears_its_rate(*scene))) {
+  if (!(reading.rate_factor < 1) || (scene && is_stable_at_rate(*scene))) {
     if (scene && reading.rate_factor > 1) {
       const auto report_as_often = [&](ArmFile& arm) {
         auto& period_ns = arm.simulated.firmware.report_period_ns;
@@ -306,9 +306,9 @@ driver::Result<Scene> load_scene(const std::filesystem::path& meant, const Scene
     }
     return scene;
   }
-  SceneReading as_it_says = reading;
-  as_it_says.rate_factor = 1;
-  return find_and_read_scene(meant, as_it_says);
+  SceneReading unchanged_rate = reading;
+  unchanged_rate.rate_factor = 1;
+  return find_and_read_scene(meant, unchanged_rate);
 }
 
 }  // namespace thimble::scene

@@ -45,8 +45,8 @@ void read_with_every_key(const std::string& text, KeyLog& keys,
   once();
   std::set<std::string> maps;  // maps of which all keys were pretended at once
   // The list grows while pretended keys lead to further keys.
-  for (std::size_t i = 0; i < keys.all_looked().size(); ++i) {
-    const std::string name = keys.all_looked()[i];
+  for (std::size_t i = 0; i < keys.all_checked().size(); ++i) {
+    const std::string name = keys.all_checked()[i];
     keys.pretend(name);
     once();
     // Some keys are read only together with others of their map.

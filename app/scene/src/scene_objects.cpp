@@ -117,12 +117,12 @@ driver::Result<render::SharedObject> build_shared(const SceneObject& object,
                                                   const MeshPointer& mesh_W, SharedMeshes& meshes,
                                                   std::size_t arms) {
   render::SharedObject shared;
-  const bool gives_way = object.body.dent || object.body.shape.named();
-  if (gives_way || object.paged) {
+  const bool deforms = object.body.dent || object.body.shape.named();
+  if (deforms || object.paged) {
     return driver::Error{fmt::format(
         "{}: {} can be touched by one arm only, and the scene has {}; {}.", name_of(object),
-        gives_way ? "an object whose surface deforms (dent, plastic, snap)" : "a page file", arms,
-        gives_way ? "keep only body: {motion: ...}" : "use a mesh file instead")};
+        deforms ? "an object whose surface deforms (dent, plastic, snap)" : "a page file", arms,
+        deforms ? "keep only body: {motion: ...}" : "use a mesh file instead")};
   }
   for (std::size_t arm = 0; arm < arms; ++arm) {
     if (object.build_field) {

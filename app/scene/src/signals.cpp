@@ -28,7 +28,7 @@ timer_t hang_timer{};
 std::atomic<bool> has_hang_timer{false};
 
 /// Starts the timer, which sends SIGTERM to this process once after the given time.
-void remind_after(std::int64_t time_ns) noexcept {
+void repeat_sigterm_after(std::int64_t time_ns) noexcept {
   if (!has_hang_timer.load()) return;
   const itimerspec once{
       .it_interval = {},
@@ -54,7 +54,7 @@ void on_signal(int number, siginfo_t* info, void*) {
   if (reminder) {
     // A process that holds an arm or writes results is never ended by the timer, only by a person.
     if (at_stake.load() > 0 || writing.load() > 0) {
-      remind_after(kOneRequest_ns);
+      repeat_sigterm_after(kOneRequest_ns);
     } else {
       end_by(number);
     }
@@ -64,7 +64,7 @@ void on_signal(int number, siginfo_t* info, void*) {
         ends_at_once(now_ns - first_ns, at_stake.load() > 0)) {
       end_by(number);
     } else if (number == SIGTERM) {
-      remind_after(kHangingMost_ns);
+      repeat_sigterm_after(kBlockedTimeMax_ns);
     }
   }
   errno = error;
@@ -108,17 +108,17 @@ bool stop_asked() noexcept {
   return interrupted.load();
 }
 
-void leave_rather_than_stop() {
+void treat_sigtstp_as_exit() {
   install(SIGTSTP, true);
   std::signal(SIGTTIN, SIG_IGN);
   std::signal(SIGTTOU, SIG_IGN);
 }
 
-LeavingGuard::LeavingGuard() noexcept {
+ForceExitGuard::ForceExitGuard() noexcept {
   at_stake.fetch_add(1);
 }
 
-LeavingGuard::~LeavingGuard() {
+ForceExitGuard::~ForceExitGuard() {
   at_stake.fetch_sub(1);
 }
 
@@ -130,7 +130,7 @@ WritingGuard::~WritingGuard() {
   writing.fetch_sub(1);
 }
 
-void outlive_trouble_with_files() {
+void ignore_sigpipe_and_sigxfsz() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 }

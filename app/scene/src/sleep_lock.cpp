@@ -13,7 +13,7 @@
 namespace thimble::scene {
 namespace {
 
-constexpr int kPatience_ms = 2000;
+constexpr int kAnswerTimeout_ms = 2000;
 
 /// Pipe whose ends are not inherited by other child processes.
 struct Pipe {
@@ -87,7 +87,7 @@ SleepLock::SleepLock() {
     pollfd answer{.fd = output.read, .events = POLLIN, .revents = 0};
     int ready = 0;
     do {
-      ready = poll(&answer, 1, kPatience_ms);
+      ready = poll(&answer, 1, kAnswerTimeout_ms);
     } while (ready < 0 && errno == EINTR);
     char text[8];
     held_ = ready > 0 && read(output.read, text, sizeof text) > 0;
@@ -111,12 +111,12 @@ void SleepLock::end() noexcept {
   if (child_ < 0) return;
   // The child exits when its input is closed. If it does not, it is killed, because it does nothing
   // else.
-  constexpr int kLooks = 100;
-  constexpr timespec kLook{.tv_sec = 0, .tv_nsec = 10'000'000};
+  constexpr int kChecksMax = 100;
+  constexpr timespec kCheckPeriod{.tv_sec = 0, .tv_nsec = 10'000'000};
   if (!held_) kill(-child_, SIGTERM);
   for (int look = 0; waitpid(child_, nullptr, WNOHANG) == 0; ++look) {
-    if (look == kLooks) kill(-child_, SIGKILL);
-    nanosleep(&kLook, nullptr);
+    if (look == kChecksMax) kill(-child_, SIGKILL);
+    nanosleep(&kCheckPeriod, nullptr);
   }
   child_ = -1;
 }

@@ -31,9 +31,9 @@ Eigen::Vector3d sliding_with(const Eigen::Matrix3d& inertia, const Eigen::Vector
   return v;
 }
 
-Eigen::Vector3d velocity_beside_axes(const Eigen::Matrix3d& inertia,
-                                     const Eigen::Vector3d& momentum, double most,
-                                     const Eigen::Vector3d& v_before) noexcept {
+Eigen::Vector3d velocity_after_tip_friction(const Eigen::Matrix3d& inertia,
+                                            const Eigen::Vector3d& momentum, double most,
+                                            const Eigen::Vector3d& v_before) noexcept {
   if (most == 0) return inertia.inverse() * momentum;
   if ((v_before.array() != 0).all()) {
     const Eigen::Vector3d sliding = inertia.inverse() * (momentum - most * v_before.cwiseSign());
@@ -71,7 +71,7 @@ using Lines = std::array<Line, 6>;
 
 /// Relaxes each line in turn: its impulse reduces the motion `v` along it as far as its limit
 /// allows.
-void take_turns(Lines& lines, Eigen::Vector3d& v) noexcept {
+void relax_lines(Lines& lines, Eigen::Vector3d& v) noexcept {
   for (Line& line : lines) {
     if (!(line.most > 0)) continue;
     const double wanted = line.impulse + line.along.dot(v) / line.along.dot(line.yields);
@@ -143,9 +143,10 @@ bool hold_exactly(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& momentu
   return false;
 }
 
-Eigen::Vector3d velocity_beside_joints(const Eigen::Matrix3d& inertia,
-                                       const Eigen::Vector3d& momentum, const DryFriction& friction,
-                                       const Eigen::Vector3d& v_before) noexcept {
+Eigen::Vector3d velocity_after_joint_friction(const Eigen::Matrix3d& inertia,
+                                              const Eigen::Vector3d& momentum,
+                                              const DryFriction& friction,
+                                              const Eigen::Vector3d& v_before) noexcept {
   constexpr int kRounds = 1000;
   const Eigen::Matrix3d inverse = inertia.inverse();
   Lines lines;
@@ -165,7 +166,7 @@ Eigen::Vector3d velocity_beside_joints(const Eigen::Matrix3d& inertia,
   Eigen::Vector3d exact;
   for (int round = 0; round < kRounds; ++round) {
     if (hold_exactly(inertia, momentum, lines, exact)) return exact;
-    take_turns(lines, v);
+    relax_lines(lines, v);
   }
   return v;
 }
@@ -177,9 +178,9 @@ Eigen::Vector3d velocity_after_friction(const Eigen::Matrix3d& inertia,
                                         const DryFriction& friction,
                                         const Eigen::Vector3d& v_before) noexcept {
   if (friction.joints.isZero(0)) {
-    return velocity_beside_axes(inertia, momentum, friction.tip, v_before);
+    return velocity_after_tip_friction(inertia, momentum, friction.tip, v_before);
   }
-  return velocity_beside_joints(inertia, momentum, friction, v_before);
+  return velocity_after_joint_friction(inertia, momentum, friction, v_before);
 }
 
 }  // namespace thimble::device_sim

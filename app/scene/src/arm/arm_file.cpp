@@ -111,29 +111,28 @@ driver::Gimbal read_gimbal(YamlMap map) {
   return gimbal;
 }
 
-std::optional<double> number_if_there(YamlMap& map, std::string_view key, std::string_view unit,
-                                      double least, double most) {
+std::optional<double> optional_value(YamlMap& map, std::string_view key, std::string_view unit,
+                                     double min, double max) {
   if (!map.has(key)) return {};
-  return map.require_number(key, unit, least, most);
+  return map.require_number(key, unit, min, max);
 }
 
 /// Default of the mean power on the hand, W, and of the averaging time, s [chosen: 1 W moves a
 /// pinch grip of 3 N s/m (PHYSICS 0) at 0.6 m/s permanently; within 2 s it is the work of 5 N over
 /// 0.4 m, so that no constant force within an arm's workspace is reduced].
-constexpr double kPowerMost = 1, kPowerTime = 2;
+constexpr double kPowerMax = 1, kPowerTime = 2;
 
 driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
   driver::GateLimits limits;
   limits.force_max = map.require_number("force_max", "N", 0.01, 100);
   limits.speed_max = map.require_number("speed_max", "m/s", 0.01, 20);
-  limits.rise_max = map.require_number("rise_max", "N/s", 1, driver::GateLimits::kRiseMost);
-  limits.soft_start =
-      map.require_number("soft_start", "s", driver::GateLimits::kSoftStartLeast, 10);
+  limits.rise_max = map.require_number("rise_max", "N/s", 1, driver::GateLimits::kRiseMax);
+  limits.soft_start = map.require_number("soft_start", "s", driver::GateLimits::kSoftStartMin, 10);
   limits.stall_ns = to_ns(map.require_number("stall", "s", 0.001, 10));
-  limits.watchdog_ns = to_ns(
-      map.require_number("watchdog", "s", 0.001, 1e-9 * driver::GateLimits::kWatchdogMost_ns));
+  limits.watchdog_ns =
+      to_ns(map.require_number("watchdog", "s", 0.001, 1e-9 * driver::GateLimits::kWatchdogMax_ns));
   limits.reopen = map.optional_number("reopen", limits.reopen, "s", 0.001, 10);
-  limits.power_max = map.optional_number("power_max", kPowerMost, "W", 0.01, 20);
+  limits.power_max = map.optional_number("power_max", kPowerMax, "W", 0.01, 20);
   limits.power_time = map.optional_number("power_time", kPowerTime, "s", 0.1, 10);
   if (limits.force_max > arm.declared.force) {
     map.reject("force_max",
@@ -149,11 +148,11 @@ driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
     energy.stage =
         static_cast<driver::EnergyStage>(map.require_choice("energy", kEnergyStageNames));
   }
-  arm.hold_unchanged = number_if_there(map, "hold_unchanged", "s", 0.05, 600);
-  energy.mass = number_if_there(map, "tip_mass", "kg", 1e-3, 10);
-  energy.allowance = number_if_there(map, "energy_allowance", "J", 0, 1);
-  energy.reservoir = number_if_there(map, "energy_reservoir", "J", 1e-6, 10);
-  energy.slope = number_if_there(map, "energy_slope", "N/m", 0.1, 1e6);
+  arm.hold_unchanged = optional_value(map, "hold_unchanged", "s", 0.05, 600);
+  energy.mass = optional_value(map, "tip_mass", "kg", 1e-3, 10);
+  energy.allowance = optional_value(map, "energy_allowance", "J", 0, 1);
+  energy.reservoir = optional_value(map, "energy_reservoir", "J", 1e-6, 10);
+  energy.slope = optional_value(map, "energy_slope", "N/m", 0.1, 1e6);
   for (const char* key :
        {"force_max", "speed_max", "rise_max", "soft_start", "stall", "watchdog", "reopen", "energy",
         "power_max", "power_time", "tip_mass", "energy_allowance", "energy_reservoir",
@@ -188,20 +187,21 @@ DeclaredLimits read_declared(YamlMap map) {
 }
 
 /// Returns the largest compensation force of the motors over the workspace, N.
-double most_carried(const ArmFile& arm) {
+double max_carried(const ArmFile& arm) {
   if (arm.carried_moments.isZero(0)) return arm.carried_weight;
   constexpr int kPlaces = 5;  // number of points along each side of the workspace
   const LinkGravity links = link_gravity(arm);
   const Eigen::Vector3d side = (arm.workspace.max_W - arm.workspace.min_W) / (kPlaces - 1);
-  double most = 0;
+  double max_force = 0;
   for (int i = 0; i < kPlaces * kPlaces * kPlaces; ++i) {
     const Eigen::Vector3d at(i % kPlaces, i / kPlaces % kPlaces, i / (kPlaces * kPlaces));
     const Eigen::Vector3d p_WT = arm.workspace.min_W + side.cwiseProduct(at);
     const auto q = links.arm.inverse(arm.R_WB.transpose() * (p_WT - arm.p_WB));
     if (!q) continue;
-    most = std::max(most, (links.carried(*q) + Eigen::Vector3d(0, 0, arm.carried_weight)).norm());
+    max_force =
+        std::max(max_force, (links.carried(*q) + Eigen::Vector3d(0, 0, arm.carried_weight)).norm());
   }
-  return most;
+  return max_force;
 }
 
 /// Reads how much of the weight of the arm its motors carry: at most a third of `force_max` of the
@@ -220,7 +220,7 @@ void read_carried(YamlMap map, ArmFile& arm) {
   }
   if (!arm.carried_moments.isZero(0)) {
     LinkGravity links = link_gravity(arm);
-    links.most = HUGE_VAL;
+    links.max_force = HUGE_VAL;
     const auto q = links.arm.inverse(arm.R_WB.transpose() * (arm.workspace.middle() - arm.p_WB));
     const double weight = q ? links.carried(*q).norm() + arm.carried_weight : 0;
     if (weight > third) {
@@ -231,7 +231,7 @@ void read_carried(YamlMap map, ArmFile& arm) {
     }
   }
   map.finish();
-  arm.carried_most = most_carried(arm);
+  arm.max_carried_force = max_carried(arm);
 }
 
 std::vector<driver::BoardKind> read_boards(YamlMap& root, const driver::ArmRow& row) {
@@ -252,11 +252,11 @@ std::vector<driver::BoardKind> read_boards(YamlMap& root, const driver::ArmRow& 
 }
 
 /// Returns the shape of arms whose vendor software reports the position of the tip.
-const driver::ShapeRow& told_shape() {
+const driver::ShapeRow& vendor_pose_shape() {
   const auto shapes = driver::arm_shapes();
   return *std::find_if(shapes.begin(), shapes.end(), [](const driver::ShapeRow& row) {
     return row.built_in != nullptr &&
-           std::holds_alternative<driver::ToldArm>(row.built_in().geometry);
+           std::holds_alternative<driver::VendorPoseArm>(row.built_in().geometry);
   });
 }
 
@@ -270,7 +270,7 @@ void read_kind(YamlMap& root, ArmFile& arm) {
   arm.boards = read_boards(root, row);
   if (row.has_own_link()) {
     // The software of its vendor knows joints and motors. A file that contains them is rejected.
-    arm.model = told_shape().built_in();
+    arm.model = vendor_pose_shape().built_in();
     return;
   }
   const driver::ShapeRow& shape = driver::arm_shapes()[root.optional_choice("shape", 0, shapes)];
@@ -287,7 +287,7 @@ void read_kind(YamlMap& root, ArmFile& arm) {
   if ((row.kind == driver::ArmKind::kFalcon) != arm.is<driver::DeltaArm>()) {
     root.reject("protocol", "expected falcon_packet with shape: falcon, and only with it");
   }
-  if (arm.is<driver::ToldArm>()) {
+  if (arm.is<driver::VendorPoseArm>()) {
     root.reject("shape", "told is only for arms that a service or library of their vendor drives");
   }
   if (!root.has("gimbal")) return;
@@ -325,7 +325,7 @@ driver::Result<ArmFile> read_arm(YamlFile& yaml) {
     read_carried(root.require_map("gravity_compensation"), arm);
   }
   arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
-  if (arm.is<driver::ToldArm>() && root.has("simulation")) {
+  if (arm.is<driver::VendorPoseArm>() && root.has("simulation")) {
     root.refuse("simulation",
                 "an arm that a service or library of its vendor drives cannot be simulated");
   }

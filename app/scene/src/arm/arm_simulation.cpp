@@ -34,7 +34,7 @@ driver::Result<device_sim::HandPath> path_in_base(const HandRoute& hand_W, const
 /// Returns the simulation settings of an arm file, with protocol and model number of its board.
 device_sim::SimulatedArmSettings settings_of(const ArmFile& file) {
   device_sim::SimulatedArmSettings settings = file.simulated;
-  settings.firmware.speaks = file.protocol;
+  settings.firmware.protocol = file.protocol;
   settings.firmware.line_model = file.board_model;
   return settings;
 }
@@ -65,7 +65,7 @@ driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W) {
 driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
     const ArmFile& file, const HandRoute& hand_W, const std::filesystem::path& firmware,
     std::uint64_t seed) {
-  if (file.is<driver::ToldArm>()) {
+  if (file.is<driver::VendorPoseArm>()) {
     return driver::Error{"The arm " + file.name +
                          " is driven by its vendor's software, so it cannot be simulated. Start "
                          "that software and name the arm with --device (thimble devices), or name "

@@ -60,12 +60,12 @@ Result<void> check_board(driver::Transport& wire, const ArmFile& file, const Fou
 }
 
 Result<void> home(driver::SerialLine& line) {
-  constexpr int kAsksMax =
+  constexpr int kRequestsMax =
       60'000;  // a minute at one request per millisecond; a slow hand may take longer
   std::uint8_t homed = 0;
-  bool told = false;
+  bool prompted = false;
   int silent = 0;
-  for (int i = 0; i < kAsksMax; ++i) {
+  for (int i = 0; i < kRequestsMax; ++i) {
     if (stop_asked()) return Error{"Stopped before the Falcon was homed; it got no force."};
     const falcon::HomingState state = falcon::home_once(line, homed);
     silent = state.answered ? 0 : silent + 1;
@@ -73,9 +73,9 @@ Result<void> home(driver::SerialLine& line) {
       return Error{"The Falcon stopped answering during homing. Check its power and cable."};
     if (state.done()) return {};
     homed = state.homed;
-    if (!told && state.answered) {
+    if (!prompted && state.answered) {
       terminal().info("Pull the Falcon's grip all the way out, then push it in.");
-      told = true;
+      prompted = true;
     }
   }
   return Error{"The Falcon was not homed. Pull its grip all the way out, push it in, and retry."};
@@ -184,20 +184,20 @@ Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_
 }
 
 std::string boards_left_out(const std::vector<FoundArm>& plugged_in) {
-  std::string boards, stand_ins;
+  std::string boards, thimble_services;
   for (const FoundArm& arm : plugged_in) {
     if (arm.certainty != Certainty::kUnknown) continue;
     if (arm.board == BoardKind::kHaplyService) {
-      stand_ins.append(stand_ins.empty() ? "" : ", ").append(arm.name());
+      thimble_services.append(thimble_services.empty() ? "" : ", ").append(arm.name());
       continue;
     }
     boards.append(boards.empty() ? "" : ", ").append(arm.name()).append(": ").append(arm.arm);
   }
   std::string sentences;
-  if (!stand_ins.empty()) {
+  if (!thimble_services.empty()) {
     sentences =
         "Ignored, because `thimble exec --serve haply` answers there and not an Inverse3: " +
-        stand_ins + ". Use it with --device NAME.";
+        thimble_services + ". Use it with --device NAME.";
   }
   if (boards.empty()) return sentences;
   return sentences + (sentences.empty() ? "" : " ") +

@@ -73,13 +73,13 @@ device_sim::GimbalMotion read_gimbal_motion(YamlMap map) {
 /// heat (section joints).
 device_sim::MotorHeatSettings read_motor_heat(YamlMap map) {
   device_sim::MotorHeatSettings heat;
-  heat.rise = map.require_number("rise", "K", 1, device_sim::MotorHeatSettings::kRiseMost);
+  heat.rise = map.require_number("rise", "K", 1, device_sim::MotorHeatSettings::kRiseMax);
   heat.continuous_current = map.require_vector3("continuous_current", "A", 0.001, 100);
   heat.time_constant = map.require_vector3("time_constant", "s", 0.1, 1e5);
   heat.resistance = map.optional_number("resistance", kCopperResistance, "1/K", 0, 0.1);
   heat.torque = map.optional_number("torque", 0, "1/K", -0.1, 0);
   heat.at_start =
-      map.optional_vector3("at_start", {0, 0, 0}, "K", 0, device_sim::MotorHeatSettings::kRiseMost);
+      map.optional_vector3("at_start", {0, 0, 0}, "K", 0, device_sim::MotorHeatSettings::kRiseMax);
   map.finish();
   return heat;
 }
@@ -87,8 +87,8 @@ device_sim::MotorHeatSettings read_motor_heat(YamlMap map) {
 /// Reads the parts between motors and links. The plant reports combinations that are not possible.
 device_sim::DriveTrainSettings read_drive_train(YamlMap map) {
   constexpr double kTurn = 2 * std::numbers::pi;
-  const auto amounts = [&map](std::string_view key, std::string_view unit, double most) {
-    return map.optional_vector3(key, {0, 0, 0}, unit, 0, most);
+  const auto amounts = [&map](std::string_view key, std::string_view unit, double max) {
+    return map.optional_vector3(key, {0, 0, 0}, unit, 0, max);
   };
   device_sim::DriveTrainSettings train;
   train.current_lag = map.optional_number("current_lag", 0, "s", 0, 0.1);

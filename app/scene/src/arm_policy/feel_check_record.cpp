@@ -106,7 +106,7 @@ std::string record_of(const CheckedArm& arm) {
 }
 
 /// Returns whether a file belongs to this user and is not writable by others.
-bool is_mine(const fs::path& file) {
+bool is_owned_by_user(const fs::path& file) {
   struct stat status {};
   return ::stat(file.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
          status.st_uid == geteuid() && (status.st_mode & S_IWOTH) == 0;
@@ -129,10 +129,10 @@ fs::path feel_check_file(const std::string& name) {
 bool has_passed(const CheckedArm& arm) {
   if (arm.firmware.empty()) return false;
   const fs::path file = feel_check_file(arm.name);
-  return is_mine(file) && content_of(file) == record_of(arm);
+  return is_owned_by_user(file) && content_of(file) == record_of(arm);
 }
 
-driver::Result<void> keep_passed(const CheckedArm& arm) {
+driver::Result<void> save_feel_check(const CheckedArm& arm) {
   if (arm.firmware.empty()) {
     return driver::Error{
         "The firmware of the arm is not known, so this check is not recorded. For a Falcon, name "
@@ -153,7 +153,7 @@ driver::Result<void> keep_passed(const CheckedArm& arm) {
   return {};
 }
 
-driver::Result<void> forget_passed(const std::string& name) {
+driver::Result<void> remove_feel_check(const std::string& name) {
   const fs::path file = feel_check_file(name);
   std::error_code trouble;
   fs::remove(file, trouble);

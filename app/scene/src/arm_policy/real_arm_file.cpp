@@ -37,7 +37,7 @@ std::string fitting_names(const FoundArm& arm) {
   return names.empty() ? "none is installed that fits it" : "installed are: " + names;
 }
 
-Error say_which(const FoundArm& arm, const std::string& because) {
+Error error_arm_file_unknown(const FoundArm& arm, const std::string& because) {
   return Error{because + " Choose its arm file: thimble calibrate --device " + arm.name() +
                " --arm NAME stores it for all later runs, --arm NAME applies to one run (" +
                fitting_names(arm) + ")."};
@@ -45,7 +45,7 @@ Error say_which(const FoundArm& arm, const std::string& because) {
 
 /// Returns the error for an arm behind a library. It is not calibrated here, so each run must name
 /// its file.
-Error say_by_arm(const FoundArm& arm) {
+Error error_library_needs_arm_file(const FoundArm& arm) {
   return Error{"The library of " + arm.arm + " " + arm.name() +
                " drives several arms. Name the arm file in each run: --arm NAME (" +
                fitting_names(arm) + ")."};
@@ -66,14 +66,14 @@ Result<Choice> installed_for_model(const FoundArm& arm, int model) {
     const auto file = load_arm(installed.path);
     if (!file || file->board_model != model || !check_fits(*file, arm)) continue;
     if (found) {
-      return say_which(arm, "The board " + arm.name() + " reports model " + number +
-                                ", for which several arm files are installed.");
+      return error_arm_file_unknown(arm, "The board " + arm.name() + " reports model " + number +
+                                             ", for which several arm files are installed.");
     }
     found = Choice{installed.path, "its board reports model " + number};
   }
   if (found) return *found;
-  return say_which(arm, "The board " + arm.name() + " reports model " + number +
-                            ", for which no arm file is installed.");
+  return error_arm_file_unknown(arm, "The board " + arm.name() + " reports model " + number +
+                                         ", for which no arm file is installed.");
 }
 
 /// Finds the installed file of an arm if the user did not name one.
@@ -88,13 +88,14 @@ Result<Choice> choose_by_arm(const FoundArm& arm, const Calibration* calibration
     return installed_named(std::string(row->own_file), "the arm is a " + arm.arm);
   }
   if (row != nullptr && row->has_own_link()) {
-    return say_by_arm(arm);
+    return error_library_needs_arm_file(arm);
   }
   if (arm.kind != ArmKind::kHfabLine) {
-    return say_which(arm, "The arm " + arm.name() + " does not report its model over USB.");
+    return error_arm_file_unknown(arm,
+                                  "The arm " + arm.name() + " does not report its model over USB.");
   }
   const auto model = search.ask_model ? search.ask_model(arm) : ask_board_model(arm);
-  if (!model) return say_which(arm, model.error().message);
+  if (!model) return error_arm_file_unknown(arm, model.error().message);
   return installed_for_model(arm, *model);
 }
 
@@ -152,13 +153,13 @@ Result<RealArmFile> find_real_arm_file(const FoundArm& arm, const RealArmSearch&
   auto file = load_arm(choice->path);
   if (!file) return file.error();
   RealArmFile found{
-      .path = choice->path, .file = std::move(file).value(), .why = choice->why, .told = {}};
+      .path = choice->path, .file = std::move(file).value(), .why = choice->why, .warnings = {}};
   if (auto fits = check_fits(found.file, arm); !fits) return fits.error();
   if (other) {
     if (const char* section = differing_section(found.file, *other)) {
       return differs(search.arm_file, section, found.path);
     }
-    found.told = tighten(found.file, found.path, *other, search.arm_file);
+    found.warnings = tighten(found.file, found.path, *other, search.arm_file);
   }
   if (known == nullptr || search.for_calibration) return found;
   const std::string name = found.path.stem().string();

@@ -73,45 +73,45 @@ driver::Error no_path_error(const HandWaypoint& from, const HandWaypoint& to) {
 
 // Returns the fraction of the path that the hand has covered after the fraction `s` of the time.
 // The hand is at rest at both ends.
-double eased(double s) {
+double minimum_jerk(double s) {
   return s * s * s * (10 + s * (6 * s - 15));
 }
 
 // Polyline, evaluated at a fraction of its length.
-class LongPath {
+class Polyline {
  public:
-  explicit LongPath(std::vector<Vector3d> points) : points_(std::move(points)), gone_{0} {
+  explicit Polyline(std::vector<Vector3d> points) : points_(std::move(points)), length_to_{0} {
     for (std::size_t i = 1; i < points_.size(); ++i) {
-      gone_.push_back(gone_.back() + (points_[i] - points_[i - 1]).norm());
+      length_to_.push_back(length_to_.back() + (points_[i] - points_[i - 1]).norm());
     }
   }
 
   Vector3d at(double share) const {
-    const double where = share * gone_.back();
-    const auto next = std::upper_bound(gone_.begin() + 1, gone_.end() - 1, where);
-    const auto i = static_cast<std::size_t>(next - gone_.begin());
-    const double length = gone_[i] - gone_[i - 1];
-    const double part = length > 0 ? std::min((where - gone_[i - 1]) / length, 1.0) : 0;
+    const double where = share * length_to_.back();
+    const auto next = std::upper_bound(length_to_.begin() + 1, length_to_.end() - 1, where);
+    const auto i = static_cast<std::size_t>(next - length_to_.begin());
+    const double length = length_to_[i] - length_to_[i - 1];
+    const double part = length > 0 ? std::min((where - length_to_[i - 1]) / length, 1.0) : 0;
     return points_[i - 1] + part * (points_[i] - points_[i - 1]);
   }
 
  private:
   std::vector<Vector3d> points_;
-  std::vector<double> gone_;  // length up to each point, m
+  std::vector<double> length_to_;  // length up to each point, m
 };
 
 // Path of the hand where the straight path jumps.
 struct Detour {
-  LongPath path;
+  Polyline path;
   bool on_surface = false;
 };
 
-// Plans one route. `routed_` holds the stretches that take a detour, because the straight path
-// jumps there.
+// Plans one route. `takes_detour_` holds the stretches that take a detour, because the straight
+// path jumps there.
 class Plan {
  public:
   Plan(const std::vector<HandWaypoint>& waypoints, const std::vector<NamedMesh>& objects)
-      : waypoints_(waypoints), routed_(waypoints.size(), false) {
+      : waypoints_(waypoints), takes_detour_(waypoints.size(), false) {
     for (const NamedMesh& object : objects) {
       const auto [at, fresh] = probes_.try_emplace(object.name, *object.mesh_W);
       if (fresh) routes_.try_emplace(object.name, *object.mesh_W, at->second);
@@ -122,16 +122,16 @@ class Plan {
     if (auto known = check(); !known) return known.error();
     // Free stretches that end on the surface lead to the pressed point, not to the closest point.
     for (const HandWaypoint& w : waypoints_) {
-      stations_.push_back(w.on ? pressed(probes_.at(*w.on).closest(w.p_W), w.press) : w.p_W);
+      targets_.push_back(w.on ? pressed(probes_.at(*w.on).closest(w.p_W), w.press) : w.p_W);
     }
     // Each iteration finds one more stretch that jumps.
     for (;;) {
       const std::size_t jumps_at = try_once();
       if (jumps_at == waypoints_.size()) return std::move(route_);
-      if (routed_[jumps_at]) {
+      if (takes_detour_[jumps_at]) {
         return no_path_error(waypoints_[jumps_at], waypoints_[jumps_at + 1]);
       }
-      routed_[jumps_at] = true;
+      takes_detour_[jumps_at] = true;
     }
   }
 
@@ -162,7 +162,7 @@ class Plan {
   Vector3d speed_at(std::size_t i) const {
     const auto& w = waypoints_;
     if (i == 0 || i + 1 == w.size() || w[i].stop) return Vector3d::Zero();
-    if (routed_[i - 1] || routed_[i]) return Vector3d::Zero();
+    if (takes_detour_[i - 1] || takes_detour_[i]) return Vector3d::Zero();
     if (follows_surface(w[i - 1], w[i]) != follows_surface(w[i], w[i + 1])) return Vector3d::Zero();
     return (w[i + 1].p_W - w[i - 1].p_W) / (w[i + 1].time - w[i - 1].time);
   }
@@ -170,15 +170,15 @@ class Plan {
   // Plans all stretches. Returns the first that cannot be planned as it is, or the number of
   // waypoints.
   std::size_t try_once() {
-    route_ = {{waypoints_.front().time, stations_.front()}};
+    route_ = {{waypoints_.front().time, targets_.front()}};
     std::size_t run_begin =
         0;  // index in the route at which the present stretch on the surface begins
     for (std::size_t i = 0; i + 1 < waypoints_.size(); ++i) {
       const HandWaypoint& to = waypoints_[i + 1];
       const bool on_surface = follows_surface(waypoints_[i], to);
-      if (!(routed_[i] ? take_detour(i) : go_straight(i))) return i;
-      const bool goes_on = i + 2 < waypoints_.size() && follows_surface(to, waypoints_[i + 2]);
-      if (on_surface && !(goes_on && !to.stop)) smooth(route_, run_begin, route_.size() - 1);
+      if (!(takes_detour_[i] ? take_detour(i) : go_straight(i))) return i;
+      const bool continues = i + 2 < waypoints_.size() && follows_surface(to, waypoints_[i + 2]);
+      if (on_surface && !(continues && !to.stop)) smooth(route_, run_begin, route_.size() - 1);
       if (!on_surface || to.stop) run_begin = route_.size() - 1;
     }
     return waypoints_.size();
@@ -192,7 +192,7 @@ class Plan {
     const HandWaypoint& from = waypoints_[i];
     const HandWaypoint& to = waypoints_[i + 1];
     const bool on_surface = follows_surface(from, to);
-    const Quintic path{on_surface ? from.p_W : stations_[i], on_surface ? to.p_W : stations_[i + 1],
+    const Quintic path{on_surface ? from.p_W : targets_[i], on_surface ? to.p_W : targets_[i + 1],
                        speed_at(i), speed_at(i + 1), to.time - from.time};
     const int steps = steps_of(path.time);
     SurfaceProbe* const probe = on_surface ? &probes_.at(*from.on) : nullptr;
@@ -207,7 +207,7 @@ class Plan {
         const SurfacePoint point = probe->closest(p_WH);
         if (!((point.p_WS - last.p_WS).norm() <= std::max(kRunMax * asked, kJumpMin))) return false;
         last = point;
-        p_WH = pressed(point, from.press + eased(s) * (to.press - from.press));
+        p_WH = pressed(point, from.press + minimum_jerk(s) * (to.press - from.press));
       }
       route_.emplace_back(step == steps ? to.time : time, p_WH);
     }
@@ -221,12 +221,12 @@ class Plan {
     const HandWaypoint& to = waypoints_[i + 1];
     SurfaceRoute& route = routes_.at(*from.on);
     std::vector<Vector3d> points = route.over_surface(from.p_W, to.p_W);
-    if (!points.empty()) return Detour{LongPath(std::move(points)), true};
-    points = route.over_the_gap(stations_[i], stations_[i + 1]);
+    if (!points.empty()) return Detour{Polyline(std::move(points)), true};
+    points = route.through_free_space(targets_[i], targets_[i + 1]);
     if (points.empty()) return {};
-    points.front() = stations_[i];
-    points.back() = stations_[i + 1];
-    return Detour{LongPath(std::move(points)), false};
+    points.front() = targets_[i];
+    points.back() = targets_[i + 1];
+    return Detour{Polyline(std::move(points)), false};
   }
 
   bool take_detour(std::size_t i) {
@@ -241,10 +241,10 @@ class Plan {
     const int steps = steps_of(to.time - from.time);
     for (int step = 1; step <= steps; ++step) {
       const double s = static_cast<double>(step) / steps;
-      Vector3d p_WH = detour.path.at(eased(s));
+      Vector3d p_WH = detour.path.at(minimum_jerk(s));
       if (detour.on_surface) {
         const SurfacePoint point = probes_.at(*from.on).closest(p_WH);
-        p_WH = pressed(point, from.press + eased(s) * (to.press - from.press));
+        p_WH = pressed(point, from.press + minimum_jerk(s) * (to.press - from.press));
       }
       route_.emplace_back(step == steps ? to.time : from.time + s * (to.time - from.time), p_WH);
     }
@@ -252,11 +252,11 @@ class Plan {
   }
 
   const std::vector<HandWaypoint>& waypoints_;
-  std::vector<bool> routed_;  // by the waypoint at which a stretch begins
+  std::vector<bool> takes_detour_;  // by the waypoint at which a stretch begins
   std::map<std::string, SurfaceProbe> probes_;
   std::map<std::string, SurfaceRoute> routes_;
   std::map<std::size_t, Detour> detours_;  // found detours, by the waypoint at which they begin
-  std::vector<Vector3d> stations_;
+  std::vector<Vector3d> targets_;
   HandRoute route_;
 };
 

@@ -17,11 +17,11 @@
 namespace thimble::scene {
 namespace {
 
-constexpr double kPlaceMax = 2;       // m
-constexpr std::size_t kArmsMost = 8;  // [chosen: two users with two hands each, and a reserve]
+constexpr double kPlaceMax = 2;      // m
+constexpr std::size_t kArmsMax = 8;  // [chosen: two users with two hands each, and a reserve]
 
 /// Rotates a box by multiples of 90 degrees about z.
-WorkspaceBox box_turned(const WorkspaceBox& box, const Eigen::Matrix3d& R) {
+WorkspaceBox rotated_box(const WorkspaceBox& box, const Eigen::Matrix3d& R) {
   const Eigen::Vector3d a = R * box.min_W, b = R * box.max_W;
   return {.min_W = a.cwiseMin(b), .max_W = a.cwiseMax(b)};
 }
@@ -91,7 +91,7 @@ driver::Result<SceneArm> read_arm_entry(YamlMap& map, const std::filesystem::pat
 ArmFile ArmPlace::put(ArmFile arm) const {
   arm.R_WB = R * arm.R_WB;
   arm.p_WB = R * arm.p_WB + p;
-  arm.workspace = box_turned(arm.workspace, R);
+  arm.workspace = rotated_box(arm.workspace, R);
   arm.workspace.min_W += p;
   arm.workspace.max_W += p;
   return arm;
@@ -108,9 +108,9 @@ driver::Result<void> read_arms(YamlMap& root, const std::filesystem::path& folde
     }
   }
   if (arms.size() == 1) root.refuse("arms", "expected two arms or more; for one use arm and hand");
-  if (arms.size() > kArmsMost) {
-    root.refuse("arms", fmt::format("expected at most {} arms, found {}", kArmsMost, arms.size()));
-    arms.resize(kArmsMost, arms.front());
+  if (arms.size() > kArmsMax) {
+    root.refuse("arms", fmt::format("expected at most {} arms, found {}", kArmsMax, arms.size()));
+    arms.resize(kArmsMax, arms.front());
   }
   std::vector<SceneArm> read;
   for (YamlMap& map : arms) {

@@ -51,12 +51,12 @@ double SphereTree::distance(std::size_t node, const Vector3d& p) const {
 
 double SphereTree::nearest_far_side(const Vector3d& p) const {
   double nearest = std::numeric_limits<double>::infinity();
-  if (!nodes_.empty()) look_for_far_side(0, 0, spheres_.size(), p, nearest);
+  if (!nodes_.empty()) search_far_side(0, 0, spheres_.size(), p, nearest);
   return nearest;
 }
 
-void SphereTree::look_for_far_side(std::size_t node, std::size_t begin, std::size_t end,
-                                   const Vector3d& p, double& nearest) const {
+void SphereTree::search_far_side(std::size_t node, std::size_t begin, std::size_t end,
+                                 const Vector3d& p, double& nearest) const {
   if (distance(node, p) > nearest) return;
   if (end - begin <= kLeaf) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -66,21 +66,21 @@ void SphereTree::look_for_far_side(std::size_t node, std::size_t begin, std::siz
   }
   const std::size_t middle = begin + (end - begin) / 2;
   const bool left_first = distance(2 * node + 1, p) <= distance(2 * node + 2, p);
-  if (left_first) look_for_far_side(2 * node + 1, begin, middle, p, nearest);
-  look_for_far_side(2 * node + 2, middle, end, p, nearest);
-  if (!left_first) look_for_far_side(2 * node + 1, begin, middle, p, nearest);
+  if (left_first) search_far_side(2 * node + 1, begin, middle, p, nearest);
+  search_far_side(2 * node + 2, middle, end, p, nearest);
+  if (!left_first) search_far_side(2 * node + 1, begin, middle, p, nearest);
 }
 
 void SphereTree::find_within(const Vector3d& p, double reach,
                              std::vector<std::size_t>& found) const {
   found.clear();
-  if (!nodes_.empty()) look_within(0, 0, spheres_.size(), p, reach, found);
+  if (!nodes_.empty()) search_within(0, 0, spheres_.size(), p, reach, found);
   std::sort(found.begin(), found.end());
 }
 
-void SphereTree::look_within(std::size_t node, std::size_t begin, std::size_t end,
-                             const Vector3d& p, double reach,
-                             std::vector<std::size_t>& found) const {
+void SphereTree::search_within(std::size_t node, std::size_t begin, std::size_t end,
+                               const Vector3d& p, double reach,
+                               std::vector<std::size_t>& found) const {
   if (distance(node, p) - nodes_[node].radius_max > reach) return;
   if (end - begin <= kLeaf) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -91,8 +91,8 @@ void SphereTree::look_within(std::size_t node, std::size_t begin, std::size_t en
     return;
   }
   const std::size_t middle = begin + (end - begin) / 2;
-  look_within(2 * node + 1, begin, middle, p, reach, found);
-  look_within(2 * node + 2, middle, end, p, reach, found);
+  search_within(2 * node + 1, begin, middle, p, reach, found);
+  search_within(2 * node + 2, middle, end, p, reach, found);
 }
 
 }  // namespace thimble::scene

@@ -25,12 +25,12 @@ constexpr int kEdgePointsMax = 8;
 // Step of a path as a fraction of the mesh, and number of straightening passes. [chosen: paths over
 // a sphere of 2,000 triangles are within 2 % of great circles]
 constexpr double kStep = 1.0 / 200;
-constexpr int kPulls = 30;
+constexpr int kStraighteningPasses = 30;
 
 // Number of grid points along each axis for paths through free space, in the box of the mesh with a
 // margin. [chosen: openings of a thirtieth of the mesh are found]
 constexpr int kGrid = 40;
-constexpr double kBeyond = 0.1;  // margin as a fraction of the box's diagonal
+constexpr double kGridMargin = 0.1;  // margin as a fraction of the box's diagonal
 
 std::vector<Vector3d> resampled(const std::vector<Vector3d>& path, double step) {
   std::vector<Vector3d> points{path.front()};
@@ -217,7 +217,7 @@ SurfaceRoute::SurfaceRoute(const render::TriangleMesh& mesh_W, SurfaceProbe& pro
     : mesh_(mesh_W), probe_(probe) {
   for (const Vector3d& p : mesh_W.vertices) box_.extend(p);
   size_ = box_.diagonal().norm();
-  const Vector3d beyond = Vector3d::Constant(kBeyond * size_);
+  const Vector3d beyond = Vector3d::Constant(kGridMargin * size_);
   box_ = {box_.min() - beyond, box_.max() + beyond};
 }
 
@@ -238,7 +238,7 @@ std::vector<Vector3d> SurfaceRoute::over_surface(const Vector3d& p_from, const V
 // Moves each point to the closest point of the surface to the midpoint of its neighbours, if that
 // is near enough.
 void SurfaceRoute::straighten(std::vector<Vector3d>& path) {
-  for (int pull = 0; pull < kPulls; ++pull) {
+  for (int pull = 0; pull < kStraighteningPasses; ++pull) {
     for (std::size_t i = 1; i + 1 < path.size(); ++i) {
       const Vector3d p = probe_.closest((path[i - 1] + path[i + 1]) / 2).p_WS;
       const double reach = 2 * kStep * size_;
@@ -247,7 +247,8 @@ void SurfaceRoute::straighten(std::vector<Vector3d>& path) {
   }
 }
 
-std::vector<Vector3d> SurfaceRoute::over_the_gap(const Vector3d& p_from, const Vector3d& p_to) {
+std::vector<Vector3d> SurfaceRoute::through_free_space(const Vector3d& p_from,
+                                                       const Vector3d& p_to) {
   const SurfacePoint from = probe_.closest(p_from);
   const SurfacePoint to = probe_.closest(p_to);
   FreeGrid grid(box_.min(), box_.sizes() / kGrid,

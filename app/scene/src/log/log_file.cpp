@@ -63,8 +63,8 @@ void LogFile::open_it() {
   handlers.before_open = make_owned;
   handlers.after_open = keep_owned;
   if (growth_ == Growth::kRotates) {
-    file_ = std::make_shared<spdlog::sinks::rotating_file_sink_st>(path_.string(), kBytesMost,
-                                                                   kFilesMost - 1, false, handlers);
+    file_ = std::make_shared<spdlog::sinks::rotating_file_sink_st>(path_.string(), kBytesMax,
+                                                                   kFilesMax - 1, false, handlers);
   } else {
     file_ = std::make_shared<spdlog::sinks::basic_file_sink_st>(path_.string(), false, handlers);
   }

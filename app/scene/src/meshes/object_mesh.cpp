@@ -87,17 +87,17 @@ driver::Result<std::string> judge_size(const SceneObject& object, const ObjectSi
   if (!(reach > 0)) return std::string();
   const double reaches = size.side / reach;
   const bool stated = object.size || object.scale || size.has_unit;
-  const double most = stated ? kStatedReachesMax : kReachesMax;
+  const double max_reaches = stated ? kStatedReachesMax : kReachesMax;
   // Written so that NaN counts as too large.
-  if (reaches <= (stated ? most : kReachesReported)) return std::string();
+  if (reaches <= (stated ? max_reaches : kReachesReported)) return std::string();
   const std::string sentence =
       fmt::format("{}: {:.4g} m large, {:.0f} times the reach of the arm ({:.3g} m); ",
                   object.mesh_file.string(), size.side, reaches, reach);
-  if (reaches <= most) return sentence + unit_advice(size.kind);
+  if (reaches <= max_reaches) return sentence + unit_advice(size.kind);
   if (!stated) return driver::Error{sentence + unit_advice(size.kind)};
   return driver::Error{sentence +
-                       fmt::format("at most {:.0f} times are supported. Set a smaller {}.", most,
-                                   object.size ? "size (m)" : "scale")};
+                       fmt::format("at most {:.0f} times are supported. Set a smaller {}.",
+                                   max_reaches, object.size ? "size (m)" : "scale")};
 }
 
 driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object) {

@@ -58,28 +58,28 @@ struct MeshKey {
 
 /// Values by key, few enough for a linear search.
 template <class Key, class Value>
-class Shelf {
+class MeshCache {
  public:
   std::shared_ptr<const Value> find(const Key& key) const {
-    const auto found = std::find_if(things_.begin(), things_.end(),
-                                    [&key](const auto& thing) { return thing.first == key; });
-    return found == things_.end() ? nullptr : found->second;
+    const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                    [&key](const auto& entry) { return entry.first == key; });
+    return found == entries_.end() ? nullptr : found->second;
   }
   std::shared_ptr<const Value> keep(Key key, Value value) {
-    return things_.emplace_back(std::move(key), std::make_shared<const Value>(std::move(value)))
+    return entries_.emplace_back(std::move(key), std::make_shared<const Value>(std::move(value)))
         .second;
   }
-  std::size_t size() const { return things_.size(); }
+  std::size_t size() const { return entries_.size(); }
   void drop_unused() {
     drop_if([](const std::shared_ptr<const Value>& value) { return value.use_count() == 1; });
   }
   template <class Unused>
   void drop_if(const Unused& unused) {
-    std::erase_if(things_, [&](const auto& thing) { return unused(thing.second); });
+    std::erase_if(entries_, [&](const auto& entry) { return unused(entry.second); });
   }
 
  private:
-  std::vector<std::pair<Key, std::shared_ptr<const Value>>> things_;
+  std::vector<std::pair<Key, std::shared_ptr<const Value>>> entries_;
 };
 
 bool same(const render::TriangleMesh& a, const render::TriangleMesh& b) {
@@ -90,11 +90,11 @@ bool same(const render::TriangleMesh& a, const render::TriangleMesh& b) {
 
 struct SharedMeshes::Held {
   std::mutex mutex;
-  Shelf<MeshKey, ObjectMesh> files;
+  MeshCache<MeshKey, ObjectMesh> files;
   std::vector<MeshPointer> shapes;
-  Shelf<std::vector<MeshPointer>, render::TriangleMesh> joined;
-  Shelf<std::pair<MeshPointer, render::ContactChoice>, render::StillSurface> surfaces;
-  Shelf<std::pair<std::vector<HandWaypoint>, NamedPointers>, HandRoute> routes;
+  MeshCache<std::vector<MeshPointer>, render::TriangleMesh> joined;
+  MeshCache<std::pair<MeshPointer, render::ContactChoice>, render::StillSurface> surfaces;
+  MeshCache<std::pair<std::vector<HandWaypoint>, NamedPointers>, HandRoute> routes;
 };
 
 SharedMeshes::SharedMeshes() : held_(std::make_unique<Held>()) {}

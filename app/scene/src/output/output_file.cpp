@@ -19,13 +19,14 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Outputs that are reserved for a later writer, by target.
-struct Kept {
+struct ReservedOutputs {
   std::mutex mutex;
   std::map<fs::path, OutputFile> files;
 };
 
-Kept& kept() {
-  static auto* const only = new Kept;  // never destroyed: threads may still write at exit
+ReservedOutputs& reserved() {
+  static auto* const only =
+      new ReservedOutputs;  // never destroyed: threads may still write at exit
   return *only;
 }
 
@@ -92,10 +93,10 @@ driver::Result<OutputFile> OutputFile::open(const fs::path& path, const OutputKi
   auto place = resolve_output(path);
   if (!place) return place.error();
   {
-    const std::lock_guard guard(kept().mutex);
-    if (const auto found = kept().files.find(place->target); found != kept().files.end()) {
+    const std::lock_guard guard(reserved().mutex);
+    if (const auto found = reserved().files.find(place->target); found != reserved().files.end()) {
       OutputFile file = std::move(found->second);
-      kept().files.erase(found);
+      reserved().files.erase(found);
       return file;
     }
   }
@@ -246,14 +247,14 @@ driver::Result<fs::path> reserve_output(const fs::path& path, const OutputKind& 
   auto file = OutputFile::open(path, kind, replace);
   if (!file) return file.error();
   const fs::path key = file->target();
-  const std::lock_guard guard(kept().mutex);
-  kept().files.insert_or_assign(key, std::move(file).value());
+  const std::lock_guard guard(reserved().mutex);
+  reserved().files.insert_or_assign(key, std::move(file).value());
   return key;
 }
 
 void release_output(const fs::path& key) {
-  const std::lock_guard guard(kept().mutex);
-  kept().files.erase(key);
+  const std::lock_guard guard(reserved().mutex);
+  reserved().files.erase(key);
 }
 
 driver::Result<void> write_file(const fs::path& path, const OutputKind& kind,

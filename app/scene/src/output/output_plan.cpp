@@ -37,7 +37,7 @@ driver::Result<void> check_writable(const fs::path& folder) {
 }  // namespace
 
 OutputPlan::~OutputPlan() {
-  for (const fs::path& key : kept_) release_output(key);
+  for (const fs::path& key : reserved_) release_output(key);
   std::error_code ignored;
   for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) {
     ::rmdir(folder->c_str());  // fails if the folder is not empty
@@ -148,7 +148,7 @@ driver::Result<void> OutputPlan::begin() {
     if (output.use != Use::kKeep) continue;
     auto key = reserve_output(output.path, *output.kind, output.replace);
     if (!key) return by_option(output.option, key.error());
-    kept_.push_back(*key);
+    reserved_.push_back(*key);
   }
   return {};
 }

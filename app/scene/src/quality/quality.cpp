@@ -97,17 +97,17 @@ std::vector<std::string> apply_quality(Quality quality, Scene& scene,
                                        std::optional<double> budget) {
   if (quality == Quality::kNormal) return {};
   if (quality == Quality::kAuto) return choose_quality(scene, budget);
-  std::vector<std::string> said;
+  std::vector<std::string> notes;
   for (SceneObject& object : scene.objects) {
     std::string text = quality == Quality::kDraft ? draft(object) : reference(object);
     if (text.empty()) {
       text = " as in the scene;";
     }
     text.back() = '.';
-    said.push_back(object.name + ":" + text);
+    notes.push_back(object.name + ":" + text);
   }
-  said.push_back(rate_sentence(quality, scene));
-  return said;
+  notes.push_back(rate_sentence(quality, scene));
+  return notes;
 }
 
 }  // namespace thimble::scene

@@ -21,7 +21,7 @@ namespace {
 using render::BlendingChoice;
 using render::TrackerChoice;
 
-constexpr double kBeyond =
+constexpr double kTurnMargin =
     1.05;  // relative to the coarsest mesh of the table; beyond it a note is printed
 
 /// One setting of a choice of an object.
@@ -41,7 +41,8 @@ struct Knob {
 
 // Interpolates an error or a time between two measured meshes as a power of the turn. Beyond them
 // it is that of the nearer mesh.
-double between(double x, const ContactPoint& a, const ContactPoint& b, double of_a, double of_b) {
+double interpolate(double x, const ContactPoint& a, const ContactPoint& b, double of_a,
+                   double of_b) {
   if (!(of_a > 0 && of_b > 0)) return of_a;
   const double share = std::clamp(math::log(x / a.turn) / math::log(b.turn / a.turn), 0.0, 1.0);
   return math::exp((1 - share) * math::log(of_a) + share * math::log(of_b));
@@ -78,8 +79,8 @@ std::vector<Candidate> contacts_for(const SceneObject& object, double turn) {
     std::size_t k = begin;
     while (k + 2 < end && turn < points[k + 1].turn) ++k;
     const ContactPoint &a = points[k], &b = points[std::min(k + 1, end - 1)];
-    const double error = turn > 0 ? between(turn, a, b, a.error, b.error) : 0;
-    const double ns = turn > 0 ? between(turn, a, b, a.ns, b.ns) : points[end - 1].ns;
+    const double error = turn > 0 ? interpolate(turn, a, b, a.error, b.error) : 0;
+    const double ns = turn > 0 ? interpolate(turn, a, b, a.ns, b.ns) : points[end - 1].ns;
     all.push_back({error, ns, words_of(way), [&way](SceneObject& chosen) {
                      chosen.contact.tracker = way.tracker;
                      chosen.contact.blending = way.blending;
@@ -134,7 +135,7 @@ std::vector<Knob> knobs_of(const Scene& scene) {
         knobs.push_back({i,
                          fmt::format(" (its faces turn by {:.2g} degrees over an edge{})",
                                      *turn * 180 / std::numbers::pi,
-                                     *turn > kBeyond * quality_table().contacts.front().turn
+                                     *turn > kTurnMargin * quality_table().contacts.front().turn
                                          ? ", more than on any measured mesh"
                                          : ""),
                          contacts_for(object, *turn)});
@@ -157,10 +158,10 @@ const Candidate* cheapest(const Knob& knob, double error) {
   return found;
 }
 
-double least_error(const Knob& knob) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Candidate& one : knob.candidates) least = std::min(least, one.error);
-  return least;
+double min_error(const Knob& knob) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Candidate& one : knob.candidates) smallest = std::min(smallest, one.error);
+  return smallest;
 }
 
 // Returns the cheapest settings at which the error of no choice exceeds `error`, or its smallest
@@ -168,7 +169,7 @@ double least_error(const Knob& knob) {
 std::vector<const Candidate*> points_at(const std::vector<Knob>& knobs, double error) {
   std::vector<const Candidate*> points;
   for (const Knob& knob : knobs) {
-    points.push_back(cheapest(knob, std::max(error, least_error(knob))));
+    points.push_back(cheapest(knob, std::max(error, min_error(knob))));
   }
   return points;
 }
@@ -206,36 +207,36 @@ bool leaves_surface_open(const SceneObject& object) {
 std::vector<std::string> choose_quality(Scene& scene, std::optional<double> budget) {
   const std::vector<Knob> knobs = knobs_of(scene);
   const auto points = budget ? best_within(knobs, *budget) : points_at(knobs, 1);
-  std::vector<std::string> said;
+  std::vector<std::string> notes;
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     SceneObject& object = scene.objects[knobs[i].object];
     points[i]->choose(object);
-    said.push_back(fmt::format("{}: {}{}: {:.0f} ns per tick, error {:.2g} % of what can be felt.",
-                               object.name, points[i]->words, knobs[i].where, points[i]->ns,
-                               100 * points[i]->error));
+    notes.push_back(fmt::format("{}: {}{}: {:.0f} ns per tick, error {:.2g} % of what can be felt.",
+                                object.name, points[i]->words, knobs[i].where, points[i]->ns,
+                                100 * points[i]->error));
   }
   const double ns = cost_of(points);
   const std::string machine =
       fmt::format("measured on {}, table {}", quality_table().measured, quality_table().version);
   if (knobs.empty()) {
-    said.emplace_back(
+    notes.emplace_back(
         "Nothing to choose: no object leaves its contact or its dent open; shapes, fields and "
         "frictions stay as in the scene.");
   } else if (!budget) {
-    said.push_back(
+    notes.push_back(
         fmt::format("The cheapest settings without an error that can be felt: {:.0f} ns per tick "
                     "in total ({}).",
                     ns, machine));
   } else if (ns <= *budget) {
-    said.push_back(
+    notes.push_back(
         fmt::format("The most accurate settings for {:.0f} of the {:.0f} ns per tick ({}).", ns,
                     *budget, machine));
   } else {
-    said.push_back(fmt::format(
+    notes.push_back(fmt::format(
         "Nothing fits into {:.0f} ns per tick; the cheapest settings take {:.0f} ns ({}).", *budget,
         ns, machine));
   }
-  return said;
+  return notes;
 }
 
 }  // namespace thimble::scene

@@ -12,9 +12,9 @@ std::string name_of(std::string_view place, std::string_view key) {
 
 }  // namespace
 
-bool KeyLog::looked(std::string_view place, std::string_view key) {
+bool KeyLog::checked(std::string_view place, std::string_view key) {
   const std::string name = name_of(place, key);
-  if (std::find(looked_.begin(), looked_.end(), name) == looked_.end()) looked_.push_back(name);
+  if (std::find(checked_.begin(), checked_.end(), name) == checked_.end()) checked_.push_back(name);
   if (name == pretended_ || name_of(place, "*") == pretended_) return true;
   // The maps that contain the pretended key must be present as well.
   const std::string map = (place.empty() ? "" : std::string(place) + '.') + std::string(key);
@@ -33,26 +33,27 @@ void KeyLog::note(KeyNote note) {
     return;
   }
   const std::string name = name_of(note.place, note.key);
-  if (std::find(looked_.begin(), looked_.end(), name) != looked_.end()) {
+  if (std::find(checked_.begin(), checked_.end(), name) != checked_.end()) {
     note.need = KeyNeed::kOptional;
     note.fallback.clear();  // without the key the reader does something else than with a default
   }
   notes_.push_back(std::move(note));
 }
 
-void KeyLog::finished(const std::string& place, const std::vector<std::string>& asked) {
+void KeyLog::finished(const std::string& place, const std::vector<std::string>& requested) {
   Readings& readings = readings_[place];
   ++readings.count;
-  for (const std::string& key : asked) ++readings.asked[key];
+  for (const std::string& key : requested) ++readings.requested[key];
 }
 
-bool KeyLog::always_asked(const KeyNote& note) const {
+bool KeyLog::always_requested(const KeyNote& note) const {
   const std::string name = name_of(note.place, note.key);
-  if (std::find(looked_.begin(), looked_.end(), name) != looked_.end()) return false;
+  if (std::find(checked_.begin(), checked_.end(), name) != checked_.end()) return false;
   const auto readings = readings_.find(note.place);
   if (readings == readings_.end()) return true;
-  const auto asked = readings->second.asked.find(note.key);
-  return asked != readings->second.asked.end() && asked->second == readings->second.count;
+  const auto requested = readings->second.requested.find(note.key);
+  return requested != readings->second.requested.end() &&
+         requested->second == readings->second.count;
 }
 
 std::vector<std::string> KeyLog::variants_with(const KeyNote& note) const {
@@ -61,7 +62,7 @@ std::vector<std::string> KeyLog::variants_with(const KeyNote& note) const {
   std::vector<std::string> variants;
   for (const auto& [place, readings] : readings_) {
     if (!place.starts_with(prefix) || place.find('.') != std::string::npos) continue;
-    if (readings.asked.count(note.key) == 0) continue;
+    if (readings.requested.count(note.key) == 0) continue;
     const auto own = [&place = place, &note](const KeyNote& other) {
       return other.place == place && other.key == note.key;
     };
@@ -73,7 +74,7 @@ std::vector<std::string> KeyLog::variants_with(const KeyNote& note) const {
 std::vector<KeyNote> KeyLog::notes() const {
   std::vector<KeyNote> notes = notes_;
   for (KeyNote& note : notes) {
-    if (note.need == KeyNeed::kRequired && !always_asked(note)) note.need = KeyNeed::kSometimes;
+    if (note.need == KeyNeed::kRequired && !always_requested(note)) note.need = KeyNeed::kSometimes;
     note.also_in = variants_with(note);
   }
   return notes;

@@ -61,18 +61,18 @@ class KeyLog {
  public:
   /// Records that a reader checked for a key, which is therefore optional. Returns true to pretend
   /// that the missing key is present, so that the reader also requests its sub-keys.
-  bool looked(std::string_view place, std::string_view key);
+  bool checked(std::string_view place, std::string_view key);
   /// Pretends from now on that a key is present, with the maps that contain it. `name` is one of
-  /// `all_looked`. With `*` as its key, it applies to all keys checked in that map. If empty, no
+  /// `all_checked`. With `*` as its key, it applies to all keys checked in that map. If empty, no
   /// key is pretended.
   void pretend(std::string name) { pretended_ = std::move(name); }
   /// Returns the keys that were checked, as "place/key", each once.
-  const std::vector<std::string>& all_looked() const noexcept { return looked_; }
+  const std::vector<std::string>& all_checked() const noexcept { return checked_; }
   /// Records a key. Of further records of a place and key only the limits count: the log keeps the
   /// widest.
   void note(KeyNote note);
   /// Records that a reader has finished a map, for which it requested these keys.
-  void finished(const std::string& place, const std::vector<std::string>& asked);
+  void finished(const std::string& place, const std::vector<std::string>& requested);
 
   /// Returns the keys in the order of the requests. A key is required if every reading of its map
   /// requested it unconditionally.
@@ -81,15 +81,15 @@ class KeyLog {
  private:
   /// Finished readings of the maps at one place.
   struct Readings {
-    int count = 0;                     ///< Number of maps.
-    std::map<std::string, int> asked;  ///< Number of maps for which each key was requested.
+    int count = 0;                         ///< Number of maps.
+    std::map<std::string, int> requested;  ///< Number of maps for which each key was requested.
   };
 
-  bool always_asked(const KeyNote& note) const;
+  bool always_requested(const KeyNote& note) const;
   std::vector<std::string> variants_with(const KeyNote& note) const;
 
   std::vector<KeyNote> notes_;
-  std::vector<std::string> looked_;
+  std::vector<std::string> checked_;
   std::map<std::string, Readings> readings_;
   std::string pretended_;
 };

@@ -58,11 +58,11 @@ std::string in_file(const std::string& file, int line, const std::string& senten
 }
 
 /// Warns the user once per process of each warning, because studies read a scene often.
-void tell_once(const std::string& warning) {
+void warn_once(const std::string& warning) {
   static std::mutex mutex;
-  static std::set<std::string> told;
+  static std::set<std::string> warned;
   const std::lock_guard lock(mutex);
-  if (told.insert(warning).second) logger().warn(warning);
+  if (warned.insert(warning).second) logger().warn(warning);
 }
 
 }  // namespace
@@ -168,7 +168,7 @@ driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::str
 }
 
 driver::Result<void> YamlFile::finish() const {
-  for (const std::string& warning : mistakes_->warnings()) tell_once(warning);
+  for (const std::string& warning : mistakes_->warnings()) warn_once(warning);
   if (mistakes_->empty()) return {};
   return driver::Error{mistakes_->text()};
 }

@@ -54,7 +54,8 @@ YamlMap::YamlMap(const YAML::Node& node, std::string_view name, int line,
 }
 
 const YamlMap::Entry* YamlMap::find(std::string_view key, bool required) {
-  if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.emplace_back(key);
+  if (std::find(requested_.begin(), requested_.end(), key) == requested_.end())
+    requested_.emplace_back(key);
   for (const Entry& entry : entries_) {
     if (entry.key == key) return &entry;
   }
@@ -121,7 +122,7 @@ bool YamlMap::read_whole(const Entry& entry, const YAML::Node& node, const std::
 }
 
 bool YamlMap::has(std::string_view key) {
-  if (mistakes_->keys() != nullptr && mistakes_->keys()->looked(place_, key)) return true;
+  if (mistakes_->keys() != nullptr && mistakes_->keys()->checked(place_, key)) return true;
   return find(key, false) != nullptr;
 }
 
@@ -385,9 +386,9 @@ void YamlMap::refuse(std::string_view key, const std::string& sentence) {
 }
 
 void YamlMap::finish() {
-  if (mistakes_->keys() != nullptr) mistakes_->keys()->finished(place_, asked_);
+  if (mistakes_->keys() != nullptr) mistakes_->keys()->finished(place_, requested_);
   for (const Entry& entry : entries_) {
-    if (std::find(asked_.begin(), asked_.end(), entry.key) != asked_.end()) continue;
+    if (std::find(requested_.begin(), requested_.end(), entry.key) != requested_.end()) continue;
     std::string sentence = entry.key + ": unknown key";
     if (mistakes_->full()) {  // only counted from here on
       mistakes_->add(entry.line, sentence);
@@ -399,7 +400,7 @@ void YamlMap::finish() {
       sentence = entry.key + ": is the old name of " + std::string(renamed.is) +
                  ", which is here too; keep the new one";
     }
-    const auto near = nearest_word(entry.key, asked_);
+    const auto near = nearest_word(entry.key, requested_);
     if (near) sentence += " (did you mean " + in_quotes(*near) + "?)";
     mistakes_->add(entry.line, sentence);
   }

@@ -214,7 +214,7 @@ class YamlMap {
   int line_for(std::string_view key);
 
   std::vector<Entry> entries_;
-  std::vector<std::string> asked_;
+  std::vector<std::string> requested_;
   std::shared_ptr<YamlMistakes> mistakes_;
   int line_ = 0;
   std::string place_;

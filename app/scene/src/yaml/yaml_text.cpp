@@ -61,7 +61,7 @@ bool is_blank(std::string_view character) {
 
 /// Skips the blanks at the beginning of a text, at most a hundred. Returns the rest; "" at the end
 /// of the text.
-std::string_view behind_blanks(std::string_view text) {
+std::string_view skip_blanks(std::string_view text) {
   for (int passed = 0; passed < 100 && !text.empty(); ++passed) {
     const std::string_view character = text.substr(0, std::max<std::size_t>(utf8_length(text), 1));
     if (!is_blank(character)) break;
@@ -124,11 +124,11 @@ class BlankSearch {
   std::optional<TextFlaw> pass_plain(std::string_view character, std::string_view rest) {
     if (character == "\t") {
       // Tabs are allowed between brackets and in empty lines.
-      if (!indentation_ || depth_ > 0 || begins_with_any(behind_blanks(rest), "\r\n#")) return {};
+      if (!indentation_ || depth_ > 0 || begins_with_any(skip_blanks(rest), "\r\n#")) return {};
       return TextFlaw{.what = "a tab cannot indent in YAML; use spaces instead", .indents = true};
     }
     if (const OddBlank* odd = odd_blank(character)) {
-      const bool at_end = begins_with_any(behind_blanks(rest), "\r\n#,]}:");
+      const bool at_end = begins_with_any(skip_blanks(rest), "\r\n#,]}:");
       if (!indentation_ && !after_sign_ && !at_end) return {};
       return TextFlaw{
           .what = fmt::format("{} is not a blank in YAML; use a space instead", odd->name),
@@ -180,11 +180,11 @@ std::optional<TextFlaw> find_invalid_utf8(std::string_view text) {
 }
 
 std::vector<TextFlaw> find_misplaced_blanks(std::string_view text) {
-  constexpr std::size_t kMost = 100;
+  constexpr std::size_t kFlawsMax = 100;
   std::vector<TextFlaw> flaws;
   if (is_wide(text)) return flaws;
   BlankSearch search(text);
-  while (!search.at_end() && flaws.size() < kMost) {
+  while (!search.at_end() && flaws.size() < kFlawsMax) {
     if (auto flaw = search.next()) flaws.push_back(*std::move(flaw));
   }
   return flaws;

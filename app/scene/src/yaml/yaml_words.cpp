@@ -77,7 +77,8 @@ std::optional<double> to_number(const YAML::Node& node) {
 }
 
 std::optional<std::int64_t> to_whole(const YAML::Node& node) {
-  constexpr std::int64_t kMost = std::int64_t{1} << 53;  // up to here every integer is a double
+  constexpr std::int64_t kExactIntegerMax = std::int64_t{1}
+                                            << 53;  // up to here every integer is a double
   if (!is_plain_scalar(node)) return std::nullopt;
   std::string_view text = node.Scalar();
   if (text.starts_with('+')) text.remove_prefix(1);
@@ -88,11 +89,12 @@ std::optional<std::int64_t> to_whole(const YAML::Node& node) {
     // 1e3 and 7.0 are integers. The limit is exclusive, because a larger value may have been
     // rounded to it.
     const std::optional<double> decimal = to_number(node);
-    if (!decimal || !(std::abs(*decimal) < static_cast<double>(kMost))) return std::nullopt;
+    if (!decimal || !(std::abs(*decimal) < static_cast<double>(kExactIntegerMax)))
+      return std::nullopt;
     if (*decimal != std::floor(*decimal)) return std::nullopt;
     number = static_cast<std::int64_t>(*decimal);
   }
-  if (number > kMost || number < -kMost) return std::nullopt;
+  if (number > kExactIntegerMax || number < -kExactIntegerMax) return std::nullopt;
   return number;
 }
 

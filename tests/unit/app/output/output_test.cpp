@@ -147,7 +147,7 @@ TEST_F(OutputFileTest, SecondWriterIsRefusedAfterPublication) {
 
 TEST_F(OutputFileTest, FileOfAnotherKindIsKept) {
   for (const OutputKind* kind :
-       {&kTable, &kSound, &kPng, &kSvg, &kFilm, &kMesh, &kPageFile, &kJson, &kXml, &kWebPage,
+       {&kTable, &kSound, &kPng, &kSvg, &kAnimation, &kMesh, &kPageFile, &kJson, &kXml, &kWebPage,
         &kArmFile, &kQualityTable, &kMotionTrace, &kLogFile}) {
     const fs::path path = file("scene.yaml", "# An arm, a ball: both at rest\nname: precious\n");
     const auto refused = write_file(path, *kind, "new");

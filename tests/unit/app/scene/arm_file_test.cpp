@@ -168,13 +168,13 @@ TEST(ArmFile, ReadsThermalLimitsOfTheMotorsOrNone) {
 
 TEST(ArmFile, ReadsHoldTimeAndTipMass) {
   scene::ArmFile arm = *scene::load_arm(kArm);
-  EXPECT_EQ(scene::motion_settings(arm, 1000).hold_most, 10);
+  EXPECT_EQ(scene::motion_settings(arm, 1000).max_hold, 10);
   EXPECT_EQ(scene::motion_settings(arm, 1000).mass, 0.075);
   EXPECT_EQ(scene::motion_settings(arm, 1000).delay_ticks, 1);
   EXPECT_EQ(scene::motion_settings(arm, 4000).delay_ticks, 4);
   arm.hold_unchanged = 2.5;
   arm.energy.mass = 0.06;
-  EXPECT_EQ(scene::motion_settings(arm, 1000).hold_most, 2.5);
+  EXPECT_EQ(scene::motion_settings(arm, 1000).max_hold, 2.5);
   EXPECT_EQ(scene::motion_settings(arm, 1000).mass, 0.06);
   EXPECT_NE(
       mistake_with("  stall: 0.02 ", "  hold_unchanged: 0\n  stall: 0.02 ").find("hold_unchanged"),

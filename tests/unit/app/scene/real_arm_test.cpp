@@ -95,8 +95,8 @@ TEST(RealArm, OfUnknownKindIsUsedOnlyByNameAndReported) {
                                               found(ArmKind::kHfabLine, "L1")};
   EXPECT_FALSE(scene::choose_arm(arms, "auto")->has_value());
   EXPECT_EQ((*scene::choose_arm(arms, "L1"))->serial, "L1");
-  const std::string told = scene::boards_left_out(arms);
-  EXPECT_NE(told.find("P1: arm, L1: arm"), std::string::npos) << told;
+  const std::string listed = scene::boards_left_out(arms);
+  EXPECT_NE(listed.find("P1: arm, L1: arm"), std::string::npos) << listed;
   EXPECT_EQ(scene::boards_left_out({found(ArmKind::kFalcon, "F1")}), "");
   // If an arm is plugged in too, "auto" does not select it.
   EXPECT_EQ((*scene::choose_arm({arms[0], arms[1], found(ArmKind::kFalcon, "F1")}, "auto"))->serial,

@@ -103,7 +103,7 @@ TEST_F(ScannedMeshes, AreFoundByTheDoctorThatUnpacksNothing) {
   using bringup::examine_scans;
   const bringup::Finding none = bringup::examine_scans(places_);
   EXPECT_EQ(none.health, bringup::Health::kAdvice);
-  EXPECT_NE(none.mend.find("libcgal-demo"), std::string::npos);
+  EXPECT_NE(none.remedy.find("libcgal-demo"), std::string::npos);
   pack("elephant.off");
   const bringup::Finding packed = bringup::examine_scans(places_);
   EXPECT_EQ(packed.health, bringup::Health::kGood);
