@@ -329,7 +329,7 @@ void add_hil_command(CLI::App& app, int& exit_code) {
   sub->add_flag("--replug", command->options.replug,
                 "Also ask for the cable to be pulled (with --attended)");
   sub->add_option("--spring", command->options.spring,
-                  "Stiffness of a spring that you tie to the tip when asked, N/m")
+                  "Stiffness of a spring that you tie to the tip when asked, N/m (with --attended)")
       ->check(CLI::Range(50.0, 2000.0));
   sub->add_option("--known-mass", command->options.known_mass,
                   "Mass that you fix to the tip when asked, kg (with --attended): shows forces in "
