@@ -37,7 +37,7 @@ int generate_mesh(const GenerateOptions& options) {
   scene::print_format("%s: bumpy ring, %d triangles in %d pages; peak memory %.0f MiB.\n",
                       options.out.c_str(), grid.triangle_count(),
                       grid.triangle_count() / render::kPageTriangles,
-                      static_cast<double>(studies::resident_memory().most) / (1 << 20));
+                      static_cast<double>(studies::resident_memory().peak) / (1 << 20));
   return kExitDone;
 }
 

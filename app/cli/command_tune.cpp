@@ -81,7 +81,7 @@ int tune_scene(const TuneCommand& command) {
         ros2::measure_ros_latency(command.scene, command.arm_file, command.domain, kDuration);
     if (!ages) return report_error(ages.error(), kExitTrouble);
     options.topics = stability::AnswerAges{.median = 1e-9 * ages->percentile(0.5),
-                                           .most = 1e-9 * ages->percentile(0.99)};
+                                           .percentile_99 = 1e-9 * ages->percentile(0.99)};
   }
   const auto tuned = stability::tune(*scene, options);
   if (!tuned) return report_error(tuned.error(), kExitBadInput);

@@ -220,7 +220,7 @@ void report_rests(const scene::Scene& scene, const RestTrial& trial,
 void report_topics(const scene::Scene& scene, const scene::LoopTimes& times, const AnswerAges& ages,
                    TuneResult& result) {
   scene::LoopTimes late = times;
-  late.delay += ages.most;
+  late.delay += ages.percentile_99;
   const StabilityLimits here = stability_limits(scene.arms.front().arm, times, 1000, 0);
   const StabilityLimits there = stability_limits(scene.arms.front().arm, late, 1000, 0);
   result.text += fmt::format(
@@ -228,10 +228,10 @@ void report_topics(const scene::Scene& scene, const scene::LoopTimes& times, con
       "{:.2f} ms (99 %). Limit of a wall without damping that the other program "
       "computes: {:.0f} N/m by the law, {:.0f} N/m safe; computed here: {:.0f} N/m, "
       "{:.0f} N/m.\n",
-      1e3 * ages.median, 1e3 * ages.most, there.stiffness_exact, there.stiffness_safe,
+      1e3 * ages.median, 1e3 * ages.percentile_99, there.stiffness_exact, there.stiffness_safe,
       here.stiffness_exact, here.stiffness_safe);
   result.figures.push_back({"topics.age_median", 1e3 * ages.median, "ms", ""});
-  result.figures.push_back({"topics.age_99", 1e3 * ages.most, "ms", ""});
+  result.figures.push_back({"topics.age_99", 1e3 * ages.percentile_99, "ms", ""});
   result.figures.push_back({"topics.stiffness", there.stiffness_exact, "N/m", ""});
   result.figures.push_back({"topics.stiffness_safe", there.stiffness_safe, "N/m", ""});
 }

@@ -53,7 +53,7 @@ struct TuneResult {
 /// Age of the positions to which forces respond if another program computes them, s.
 struct AnswerAges {
   double median = 0;
-  double most = 0;  ///< 99th percentile
+  double percentile_99 = 0;  ///< 99th percentile
 };
 
 /// Options of a tuning.

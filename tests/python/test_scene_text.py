@@ -97,8 +97,8 @@ def test_recordings_of_dicts_and_texts_can_be_replayed(tmp_path, program):
         (lambda: thimble.run({**BALL, "arm": "eagle"}), "the name of an arm: .*falcon"),
         (lambda: thimble.run({}), "missing"),
         (lambda: thimble.run("name: [\n"), "the scene's text:2"),
-        (lambda: thimble.run("nobody", set={"rate": 500}), "Known by name"),
-        (lambda: thimble.run("./nobody.yaml", set={"rate": 500}), "nobody.yaml: cannot be read"),
+        (lambda: thimble.run("missing", set={"rate": 500}), "Known by name"),
+        (lambda: thimble.run("./missing.yaml", set={"rate": 500}), "missing.yaml: cannot be read"),
     ],
 )
 def test_mistakes_in_scenes_are_reported(wrong, message):

@@ -82,7 +82,7 @@ def main():
         package, _, _, short = dds_name.split("::")
         computed = hash_of(types, f"{package}/msg/{short[:-1]}")
         if computed != listed:
-            print(f"{dds_name}: the table has {told}, the IDL gives {computed}")
+            print(f"{dds_name}: the table has {listed}, the IDL gives {computed}")
             wrong += 1
     # Hashes that ROS 2 Kilted generates for these [S hpmicro/hpm_sdk, middleware/microros/kilted].
     published = {

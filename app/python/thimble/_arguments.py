@@ -48,7 +48,7 @@ def whole_of(name: str, value: Any, minimum: int = 0, maximum: int = _MAX_SEED) 
     """Return an integer. Raises TypeError for any other type, ArgumentError outside the bounds."""
     number = number_of(name, value)
     if not number.is_integer() or not minimum <= int(value) <= maximum:
-        raise ArgumentError(f"{name}: expected a whole number from {least} to {most}, found {value!r}.")
+        raise ArgumentError(f"{name}: expected a whole number from {minimum} to {maximum}, found {value!r}.")
     return int(value)
 
 

@@ -124,7 +124,7 @@ async def force(log):
             print(-y - 0.130, x, z - 0.170, -v, u, w, -b, a, c, file=lines)
             if turn > 1000:
                 got = three(state["current_cursor_force"])
-                check(math.dist(got, asked) < 1e-9, f"requested {asked}, sent {told}")
+                check(math.dist(got, asked) < 1e-9, f"requested {asked}, sent {got}")
     await arm.socket.close()
 
 
@@ -161,7 +161,7 @@ async def garbage():
         await opened(arm)
         answer = await arm.exchange(message)
         got = length(state_of(answer)["current_cursor_force"])
-        check(got == 0, f"{message[:60]!r} left {told} N")
+        check(got == 0, f"{message[:60]!r} left {got} N")
         check(answer["inverse3"][0]["status"]["ready"], f"{message[:60]!r} is a fault")
     await opened(arm)
 

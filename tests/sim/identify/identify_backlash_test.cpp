@@ -88,7 +88,7 @@ TEST(IdentifyBacklash, FindsTheWidthAndTheCableBehindIt) {
   }
   for (const Score* score : {&mass, &width, &resonance, &inertia, &gain}) {
     score->tell();
-    EXPECT_LT(score->worst, score->most) << score->name;
+    EXPECT_LT(score->worst, score->max) << score->name;
     EXPECT_GE(score->held, 0.9 * score->all) << score->name;
   }
   std::printf("%d of %d arms refused\n", refused, arms);

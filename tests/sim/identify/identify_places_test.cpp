@@ -117,7 +117,7 @@ TEST(IdentifyPlaces, FindsTheMassAtUnvisitedPlaces) {
   }
   std::printf("worst %.3g; %d of %d intervals, %d of %d at the places\n", score.worst, score.held,
               score.all, held_places, all_places);
-  EXPECT_LT(score.worst, score.most);
+  EXPECT_LT(score.worst, score.max);
   EXPECT_GE(score.held, (long_form() ? 0.93 : 0.85) * score.all);
   EXPECT_GE(held_places, 0.85 * all_places);
 }

@@ -61,7 +61,7 @@ struct Score {
   double max;        // allowed error, relative or in s
   double worst = 0;  // largest abs(estimate - truth), in the same unit
   int held = 0, all = 0;
-  int missed = 0;  // neither within `most` of the truth nor with the truth in the interval
+  int missed = 0;  // neither within `max` of the truth nor with the truth in the interval
 
   void add(const bringup::Estimate& estimate, double truth, bool relative = true) {
     const double off = std::abs(estimate.value - truth) / (relative ? std::abs(truth) : 1);

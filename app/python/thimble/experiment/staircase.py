@@ -43,7 +43,7 @@ class Staircase:
         self._steps = [float(one) for one in np.atleast_1d(np.asarray(step, dtype=np.float64))]
         smallest = 1.0 if multiply else 0.0
         if not self._steps or not all(np.isfinite(one) and one > smallest for one in self._steps):
-            raise ArgumentError(f"step: expected numbers above {least:g}, found {step!r}.")
+            raise ArgumentError(f"step: expected numbers above {smallest:g}, found {step!r}.")
         if down < 1 or up < 1 or not up_ratio > 0:
             raise ArgumentError("down, up: expected 1 or more; up_ratio: above 0.")
         if not 1 <= last <= reversals or max_trials < 1:

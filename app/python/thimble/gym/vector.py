@@ -176,7 +176,7 @@ class _Worker:
                 f"The process of the environments {at} ended (exit code {self.process.exitcode}). All are closed."
             ) from None
         if kind == "wrong":
-            raise Error(f"In the process of environment {self.share[told[0]]}: {told[1]}")
+            raise Error(f"In the process of environment {self.share[results[0]]}: {results[1]}")
         return results
 
     def close(self) -> None:
@@ -213,7 +213,7 @@ def _serve(pipe: Connection, parcel: bytes) -> None:
         for at, make in enumerate(makes):
             environments.append(make())
         over = [False] * len(environments)
-        pipe.send(("told", (environments[0].observation_space, environments[0].action_space)))
+        pipe.send(("results", (environments[0].observation_space, environments[0].action_space)))
         while True:
             what, each = pipe.recv()
             results = []
@@ -227,7 +227,7 @@ def _serve(pipe: Connection, parcel: bytes) -> None:
                 else:
                     results.append(environment.step(each[at]))
                     over[at] = bool(results[-1][2] or results[-1][3])
-            pipe.send(("told", results))
+            pipe.send(("results", results))
     except (EOFError, BrokenPipeError, ConnectionResetError):
         pass
     except Exception:

@@ -66,7 +66,7 @@ driver::Result<ArmPolicy> find_arm_policy(const driver::FoundArm& arm,
     return policy;
   }
   policy.feel_check = FeelCheckState::kNone;
-  policy.force_most = kFeelCheckForceMax;
+  policy.max_force = kFeelCheckForceMax;
   policy.warnings.push_back(
       fmt::format("{} has not passed the feel check with this arm file, calibration and firmware, "
                   "so this run gives it at most {:g} N. To check it: ",
@@ -101,7 +101,7 @@ driver::Result<std::vector<std::string>> apply_arm_policy(Scene& scene, const fs
     scene.energy.reset();  // now part of the arm file
   }
   scene.arms.front().arm.limits.force_max =
-      std::min(scene.arms.front().arm.limits.force_max, policy.force_most);
+      std::min(scene.arms.front().arm.limits.force_max, policy.max_force);
   return warnings;
 }
 

@@ -53,8 +53,8 @@ std::vector<SharedScene::Knob> LiveKnobs::described() const {
   for (const Knob& knob : knobs_) {
     described.push_back({.name = knob.name,
                          .unit = knob.setting.unit,
-                         .least = knob.setting.min,
-                         .most = knob.setting.max,
+                         .min = knob.setting.min,
+                         .max = knob.setting.max,
                          .initial = knob.setting.value});
   }
   return described;

@@ -84,7 +84,7 @@ TEST(YamlReader, SyntaxErrorNamesTheLine) {
   EXPECT_TRUE(
       mistakes_in("name: a\nstiffness: [1, 2\n").starts_with("arm.yaml:3: is not valid YAML"));
   EXPECT_TRUE(mistakes_in("name: a\n stiffness: 1\n").starts_with("arm.yaml:2: is not valid YAML"));
-  EXPECT_TRUE(mistakes_in("name: *nobody\n").starts_with("arm.yaml:1: is not valid YAML"));
+  EXPECT_TRUE(mistakes_in("name: *missing\n").starts_with("arm.yaml:1: is not valid YAML"));
 }
 
 TEST(YamlReader, DeepNestingIsAnError) {
