@@ -161,7 +161,7 @@ TEST_F(FalconGeometry, ExertsTheRequestedForceEverywhere) {
 }
 
 TEST_F(FalconGeometry, HasTheTipResolutionOfItsGeometry) {
-  // DEVICES 2: 9,880.7 counts per leg turn, 0.034 to 0.053 mm per count over the workspace.
+  // DEVICES 2: 9,880.7 counts per leg turn, 0.016 to 0.057 mm per count in the ball of 50 mm.
   const JointModel<DeltaArm> model = falcon_model();
   EXPECT_NEAR(2 * M_PI / model.step(0), 9880.7, 0.1);
   double least = 1, most = 0;
