@@ -347,7 +347,8 @@ void add_hil_command(CLI::App& app, int& exit_code) {
       ->group(kPerson);
   sub->add_flag("--replug", command->options.replug, "Also ask to unplug the cable (--attended)")
       ->group(kPerson);
-  sub->add_option("--spring", command->options.spring, "Stiffness of a spring on the tip, N/m (with --attended)")
+  sub->add_option("--spring", command->options.spring,
+                  "Stiffness of a spring on the tip, N/m (with --attended)")
       ->check(CLI::Range(50.0, 2000.0))
       ->group(kPerson);
   sub->add_option("--known-mass", command->options.known_mass,
