@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Five hours at 1 kHz. [chosen: a file with more is damaged, or longer than any session]
-constexpr std::size_t kMessagesMost = 20'000'000;
+constexpr std::size_t kMessagesMax = 20'000'000;
 constexpr std::int64_t kLongest =
     86'400'000'000'000;  // ns; one day, so that a double in s resolves ns
 constexpr std::int64_t kLatest = std::int64_t{1} << 62;  // ns; so that differences do not overflow
@@ -199,7 +199,7 @@ driver::Result<void> add_messages(const OpenBag& bag, const TopicRow& topic, Bag
           "is in the frame \"{}\", the previous ones in \"{}\"; expected one frame for all.",
           driver::printable_name(message->frame), driver::printable_name(*frame)));
     }
-    if (kept.size() == kMessagesMost) {
+    if (kept.size() == kMessagesMax) {
       return wrong("exceeds the limit of 20 million messages; split the bag.");
     }
     kept.push_back({received_ns, message->stamp_ns, message->value});

@@ -20,7 +20,7 @@ constexpr std::int64_t kLook_ns = 20'000;
 constexpr std::int64_t kSleptThrough_ns = 10 * kPeriod_ns;
 constexpr double kAlign_s = 0.25;            // s, duration of timing reports before the first tick
 constexpr double kEven = 1e-6;               // s, below which reports have the same phase
-constexpr double kAlignedMost = 0.8;         // of a period; above it, phases are not used
+constexpr double kAlignedMax = 0.8;          // of a period; above it, phases are not used
 constexpr std::int64_t kFollow_ns = 50'000;  // shift of the ticks to follow reports that drift
 
 /// Returns the mean of phases; 0 for none.
@@ -119,7 +119,7 @@ bool BenchArm::run(double duration, const Law& law, const std::atomic<bool>& sto
     }
     const Eigen::Vector3d f_T_W = law(state);
     if (!silent) device_->write({.f_T_W = f_T_W, .touch = {}});
-    if (!silent && sink_) tell(due_ns, now_ns, f_T_W);
+    if (!silent && sink_) report_tick(due_ns, now_ns, f_T_W);
     if (simulation_) true_force_max_ = std::max(true_force_max_, simulation_->f_T_W().norm());
     const bool seen_only = !active && device_->fault() == driver::Fault::kStateNotFinite;
     if (device_->fault() != driver::Fault::kNone && !seen_only) return false;
@@ -143,11 +143,11 @@ void BenchArm::align() {
   };
   listen(kAlign_s, heard, never);
   if (phases.size() < 50) return;
-  const auto [least, most] = std::minmax_element(phases.begin(), phases.end());
-  const double spread = *most - *least;
+  const auto [earliest, latest] = std::minmax_element(phases.begin(), phases.end());
+  const double spread = *latest - *earliest;
   // The phase is random if reports have another period, or if the arm sends only when asked.
-  if (spread < kEven || spread > kAlignedMost * kPeriod) return;
-  const double behind = *most + 0.1 * spread;
+  if (spread < kEven || spread > kAlignedMax * kPeriod) return;
+  const double behind = *latest + 0.1 * spread;
   read_late_ = behind - phases_middle(phases);
   phase_ns_ = first_ns + std::llround(1e9 * behind);
 }
@@ -172,7 +172,7 @@ void BenchArm::listen(double duration, const std::function<void(double)>& heard,
   }
 }
 
-void BenchArm::tell(std::int64_t due_ns, std::int64_t now_ns, const Eigen::Vector3d& f_T_W) {
+void BenchArm::report_tick(std::int64_t due_ns, std::int64_t now_ns, const Eigen::Vector3d& f_T_W) {
   driver::TickRecord record = driver::record_of(device_->state(), {.f_T_W = f_T_W, .touch = {}});
   record.tick = tick_++;
   record.time_ns = now_ns;

@@ -99,7 +99,7 @@ class BenchArm {
                                    const std::optional<driver::FoundArm>& real_arm);
   void align();
   std::int64_t first_due_ns() const;
-  void tell(std::int64_t due_ns, std::int64_t now_ns, const Eigen::Vector3d& f_T_W);
+  void report_tick(std::int64_t due_ns, std::int64_t now_ns, const Eigen::Vector3d& f_T_W);
 
   std::unique_ptr<scene::SleepLock> awake_;  // for a real arm
   std::unique_ptr<driver::Clock> clock_;

@@ -56,8 +56,8 @@ class Examination {
   }
 
  private:
-  void note(Health health, std::string what, std::string mend = {}) {
-    findings_.push_back({health, std::move(what), std::move(mend)});
+  void note(Health health, std::string what, std::string remedy = {}) {
+    findings_.push_back({health, std::move(what), std::move(remedy)});
   }
 
   fs::path below_root(const fs::path& path) const { return system_.root / path.relative_path(); }
@@ -101,7 +101,7 @@ class Examination {
     if (arm.certainty == driver::Certainty::kUnsupported) {
       note(Health::kAdvice,
            name + "plugged in, but not supported over USB because its protocol is not public.",
-           mend_for_closed(arm));
+           access_fix(arm));
       return;
     }
     if (arm.board == BoardKind::kHaplyService) {
@@ -277,9 +277,9 @@ bool may_run_first() {
   constexpr int kPriority = 80;
   bool granted = false;
   std::thread([&granted] {
-    sched_param wished{};
-    wished.sched_priority = kPriority;
-    granted = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wished) == 0;
+    sched_param requested{};
+    requested.sched_priority = kPriority;
+    granted = pthread_setschedparam(pthread_self(), SCHED_FIFO, &requested) == 0;
   }).join();
   return granted;
 }

@@ -16,8 +16,8 @@ enum class Health {
 /// One result of the doctor.
 struct Finding {
   Health health = Health::kGood;
-  std::string what;  ///< One sentence.
-  std::string mend;  ///< Remedy: a command or an action; empty if nothing is wrong.
+  std::string what;    ///< One sentence.
+  std::string remedy;  ///< Remedy: a command or an action; empty if nothing is wrong.
 };
 
 /// The machine under examination; tests pass one of their own.

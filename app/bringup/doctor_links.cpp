@@ -69,7 +69,7 @@ std::string rule_for(const FoundArm& arm) {
 
 }  // namespace
 
-std::string mend_for_closed(const FoundArm& arm) {
+std::string access_fix(const FoundArm& arm) {
   if (is_haply_on_usb(arm)) {
     return "Use it through its vendor's service; `thimble devices` then lists it on another line. "
            "This USB device is never opened.";
@@ -126,18 +126,19 @@ Finding examine_access(const FoundArm& arm, const std::filesystem::path& root) {
             {}};
   }
   const std::string group = group_of(root / std::filesystem::path(arm.node).relative_path());
-  std::string mend =
+  std::string remedy =
       "The vendor's set-up steps for access are not published; repeat the set-up from its manual. ";
   if (!group.empty() && group != "root") {
-    mend += "Or join the group of the device node and log in again: sudo usermod -aG " + group +
-            " $USER. ";
+    remedy += "Or join the group of the device node and log in again: sudo usermod -aG " + group +
+              " $USER. ";
   }
-  mend += "Or add this line to /etc/udev/rules.d/70-vendor-arm.rules and plug the arm in again: " +
-          rule_for(arm);
+  remedy +=
+      "Or add this line to /etc/udev/rules.d/70-vendor-arm.rules and plug the arm in again: " +
+      rule_for(arm);
   return {Health::kProblem,
           name + "you have no access to " + arm.node + ", which its vendor's library must open" +
               (group.empty() ? "." : " (group " + group + ")."),
-          mend};
+          remedy};
 }
 
 std::vector<Finding> examine_services(const std::vector<FoundArm>& arms) {

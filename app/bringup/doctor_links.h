@@ -13,7 +13,7 @@ namespace thimble::bringup {
 // from the servo thread.
 
 /// Returns the remedy for an arm on USB whose protocol is not public.
-std::string mend_for_closed(const driver::FoundArm& arm);
+std::string access_fix(const driver::FoundArm& arm);
 
 /// Returns whether an arm behind a service can be used, and its versions.
 Finding examine_linked(const driver::FoundArm& arm);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using driver::read_line;
 
 // Allowed wake-up latency: a twentieth of a period of 1 kHz, which a hand cannot feel. [chosen]
-constexpr long kWakeMost_us = 50;
+constexpr long kWakeMax_us = 50;
 
 fs::path below(const SystemInfo& system, const char* path) {
   return system.root / fs::path(path).relative_path();
@@ -104,20 +104,20 @@ void look_at_governor(const SystemInfo& system, std::vector<Finding>& findings) 
 
 /// Returns the wake-up latency of the deepest enabled sleep state, us.
 long deepest_wake_us(const SystemInfo& system) {
-  long most = 0;
+  long longest = 0;
   for (const fs::path& cpu : processors(system)) {
     std::error_code ignored;
     for (const auto& state : fs::directory_iterator(cpu / "cpuidle", ignored)) {
       if (read_line(state.path() / "disable") == "1") continue;
-      most = std::max(most, std::atol(read_line(state.path() / "latency").c_str()));
+      longest = std::max(longest, std::atol(read_line(state.path() / "latency").c_str()));
     }
   }
-  return most;
+  return longest;
 }
 
 void look_at_sleep(const SystemInfo& system, std::vector<Finding>& findings) {
   const long wake_us = deepest_wake_us(system);
-  if (wake_us <= kWakeMost_us) return;
+  if (wake_us <= kWakeMax_us) return;
   const fs::path latency = below(system, "/dev/cpu_dma_latency");
   if (access(latency.c_str(), W_OK) == 0) {
     findings.push_back({Health::kGood,
@@ -137,7 +137,7 @@ void look_at_sleep(const SystemInfo& system, std::vector<Finding>& findings) {
        there ? "echo 'KERNEL==\"cpu_dma_latency\", GROUP=\"plugdev\", MODE=\"0660\"' | sudo tee "
                "/etc/udev/rules.d/71-thimble-latency.rules && sudo udevadm control --reload && "
                "sudo udevadm trigger /dev/cpu_dma_latency"
-             : "sudo cpupower idle-set -D " + std::to_string(kWakeMost_us)});
+             : "sudo cpupower idle-set -D " + std::to_string(kWakeMax_us)});
 }
 
 }  // namespace

@@ -51,19 +51,19 @@ class Check {
 
   bool encoders() {
     if (!prompt_("Move the grip slowly through its whole workspace for 4 seconds.")) return false;
-    std::array<std::int32_t, 3> least{INT32_MAX, INT32_MAX, INT32_MAX};
-    std::array<std::int32_t, 3> most{INT32_MIN, INT32_MIN, INT32_MIN};
+    std::array<std::int32_t, 3> lowest{INT32_MAX, INT32_MAX, INT32_MAX};
+    std::array<std::int32_t, 3> highest{INT32_MIN, INT32_MIN, INT32_MIN};
     const auto watch = [&](const driver::DeviceState& state) {
       for (std::size_t i = 0; i < 3; ++i) {
-        least[i] = std::min(least[i], state.counts[i]);
-        most[i] = std::max(most[i], state.counts[i]);
+        lowest[i] = std::min(lowest[i], state.counts[i]);
+        highest[i] = std::max(highest[i], state.counts[i]);
       }
       return Eigen::Vector3d(0, 0, 0);
     };
     if (!bench_.run(kEncoders_s, watch, stop_)) return false;
     constexpr std::int32_t kTravelMin = 100;  // counts; a few mm at the tip of every supported arm
     std::array<int, 3> travel{};
-    for (std::size_t i = 0; i < 3; ++i) travel[i] = most[i] - least[i];
+    for (std::size_t i = 0; i < 3; ++i) travel[i] = highest[i] - lowest[i];
     std::string dead;
     for (std::size_t i = 0; i < 3; ++i) {
       if (travel[i] < kTravelMin)
@@ -312,10 +312,10 @@ class Check {
     if (!comes_back) {
       // The question comes before zero is sent, so that only the watchdog can have released the
       // tip.
-      const auto felt = question_ && !stop_.load() ? question_("Has the arm stopped pushing?")
-                                                   : std::optional<bool>();
+      const auto answer = question_ && !stop_.load() ? question_("Has the arm stopped pushing?")
+                                                     : std::optional<bool>();
       bench_.device().deactivate();
-      return !stop_.load() && by_feel(felt, force);
+      return !stop_.load() && by_feel(answer, force);
     }
     const double read_after = bench_.now() - silent_since;
     bench_.device().deactivate();
@@ -344,18 +344,19 @@ class Check {
   }
 
   /// Records the user's answer if dry friction hides the effect of the motors.
-  bool by_feel(const std::optional<bool>& felt, double force) {
+  bool by_feel(const std::optional<bool>& answer, double force) {
     const std::string why = fmt::format(
         "Dry friction of more than {:.2f} N holds the tip in place, so its position does not show "
         "when the motors go off. ",
         force / 2);
-    if (!felt)
+    if (!answer)
       return note("watchdog", false,
                   why + "The question whether the arm stopped pushing was not answered.");
-    return note("watchdog", *felt,
-                why + (*felt ? "You answered that the arm stopped pushing."
-                             : "You answered that the motors did not go off. Switch the arm off at "
-                               "its switch."));
+    return note(
+        "watchdog", *answer,
+        why + (*answer ? "You answered that the arm stopped pushing."
+                       : "You answered that the motors did not go off. Switch the arm off at "
+                         "its switch."));
   }
 
   static double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }

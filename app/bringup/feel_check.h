@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bringup/bench_arm.h"
-#include "thimble/scene/real_arm_terms.h"
+#include "thimble/scene/arm_policy.h"
 
 namespace thimble::bringup {
 

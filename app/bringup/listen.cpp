@@ -4,14 +4,14 @@
 
 namespace thimble::bringup {
 
-std::string Listened::text() const {
+std::string ReportStatistics::text() const {
   return fmt::format(
       "{:.0f} reports per second; {} ticks had no report, {} reports skipped, {} rejected, {} "
       "messages refused.",
       static_cast<double>(reports) / seconds, missing, skipped, rejected, refused);
 }
 
-Listened listen(BenchArm& bench, double seconds, const std::atomic<bool>& stop) {
+ReportStatistics listen(BenchArm& bench, double seconds, const std::atomic<bool>& stop) {
   const auto rest = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
   const driver::WireCounters before = bench.device().wire_counters();
   const bool whole = bench.run(seconds, rest, stop);

@@ -9,7 +9,7 @@
 namespace thimble::bringup {
 
 /// Statistics of an arm's reports while no force was requested.
-struct Listened {
+struct ReportStatistics {
   double seconds = 0;
   std::uint64_t reports = 0;
   std::uint64_t missing = 0;   ///< Ticks without a report.
@@ -26,6 +26,6 @@ struct Listened {
 };
 
 /// Reads an idle arm for `seconds` with zero force. Real-time: never from the servo thread.
-Listened listen(BenchArm& bench, double seconds, const std::atomic<bool>& stop);
+ReportStatistics listen(BenchArm& bench, double seconds, const std::atomic<bool>& stop);
 
 }  // namespace thimble::bringup

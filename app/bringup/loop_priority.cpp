@@ -12,9 +12,9 @@ LoopPriority::LoopPriority(bool wanted) noexcept {
   sched_param before{};
   if (!wanted || pthread_getschedparam(pthread_self(), &policy_, &before) != 0) return;
   priority_ = before.sched_priority;
-  sched_param wished{};
-  wished.sched_priority = kPriority;
-  raised_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wished) == 0;
+  sched_param requested{};
+  requested.sched_priority = kPriority;
+  raised_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &requested) == 0;
 }
 
 LoopPriority::~LoopPriority() {

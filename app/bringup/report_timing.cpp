@@ -8,7 +8,7 @@ namespace {
 
 // Resolution of a time, s: clocks count nanoseconds.
 constexpr double kClock = 1e-9;
-constexpr std::size_t kReportsLeast = 100;
+constexpr std::size_t kReportsMin = 100;
 // RMS over the period above which a late report is taken for a missing one.
 constexpr double kBlurred = 0.2;
 
@@ -17,7 +17,7 @@ constexpr double kBlurred = 0.2;
 ReportTiming timing_of(const std::vector<double>& times) {
   ReportTiming found;
   found.reports = times.size();
-  if (times.size() < kReportsLeast) return found;
+  if (times.size() < kReportsMin) return found;
   std::vector<double> gaps;
   for (std::size_t i = 1; i < times.size(); ++i) gaps.push_back(times[i] - times[i - 1]);
   const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);

@@ -10,9 +10,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kAxis = 1;              // y: no weight acts along it
-constexpr double kExcessMost = 0.12;  // N above dry friction [chosen]
-constexpr double kExcessLeast = 0.02;
+constexpr int kAxis = 1;             // y: no weight acts along it
+constexpr double kExcessMax = 0.12;  // N above dry friction [chosen]
+constexpr double kExcessMin = 0.02;
 constexpr double kSilent = 0.005;  // s, between two checks of the tip
 constexpr double kBefore = 0.02;   // s, push before the silence
 constexpr double kSecond = 1e-3;   // s, of a tick of BenchArm
@@ -30,11 +30,11 @@ constexpr double kStudent95 = 3.182;
 /// Returns the tick of the highest speed, over a window on both sides.
 std::size_t fastest(const std::vector<double>& way) {
   std::size_t found = 0;
-  double most = 0;
+  double longest_way = 0;
   for (std::size_t i = kHalfWindow; i + kHalfWindow < way.size(); ++i) {
     const double gone = way[i + kHalfWindow] - way[i - kHalfWindow];
-    if (gone > most) {
-      most = gone;
+    if (gone > longest_way) {
+      longest_way = gone;
       found = i;
     }
   }
@@ -52,7 +52,7 @@ double kink(const std::vector<double>& way, std::size_t about) {
   const int until = std::min(static_cast<int>(way.size()), middle + kAfter);
   const Eigen::Map<const Eigen::VectorXd> seen(way.data() + from, until - from);
   Eigen::MatrixXd columns(until - from, 4);
-  double best = middle, least = HUGE_VAL;
+  double best = middle, lowest = HUGE_VAL;
   for (double at = middle - kLook; at <= middle + kLook; at += kStep) {
     for (int i = 0; i < until - from; ++i) {
       const double t = from + i - middle, after = std::max(0.0, from + i - at);
@@ -61,26 +61,26 @@ double kink(const std::vector<double>& way, std::size_t about) {
     const Eigen::VectorXd factors =
         (columns.transpose() * columns).ldlt().solve(columns.transpose() * seen);
     const double left = (seen - columns * factors).squaredNorm();
-    if (left < least) least = left, best = at;
+    if (left < lowest) lowest = left, best = at;
   }
   return best;
 }
 
 }  // namespace
 
-WatchdogSeen see_watchdog(BenchArm& bench, const WatchdogOrder& order, double sign,
-                          const std::atomic<bool>& stop) {
-  WatchdogSeen seen;
+WatchdogPush observe_watchdog(BenchArm& bench, const WatchdogOrder& order, double sign,
+                              const std::atomic<bool>& stop) {
+  WatchdogPush seen;
   // Half more for a watchdog that is later than in the file.
   const double time = 1.5 * order.named + kBefore;
-  const double excess = std::min(kExcessMost, order.mass * 2 * kWatchdogWayMost / (time * time));
+  const double excess = std::min(kExcessMax, order.mass * 2 * kWatchdogWayMax / (time * time));
   seen.force = order.coulomb + excess;
   const Vector3d p_WT = bench.device().state().p_WT;
   // Distance of the tip after its release.
-  const Vector3d p_WE = p_WT + sign * 1.5 * kWatchdogWayMost * Vector3d::Unit(kAxis);
+  const Vector3d p_WE = p_WT + sign * 1.5 * kWatchdogWayMax * Vector3d::Unit(kAxis);
   const bool room = order.workspace.holds(p_WT) && order.workspace.holds(p_WE);
-  const bool allowed = seen.force <= order.force_most;
-  if (!(excess >= kExcessLeast) || !room || !allowed) {
+  const bool allowed = seen.force <= order.max_force;
+  if (!(excess >= kExcessMin) || !room || !allowed) {
     bench.device().deactivate();
     seen.end = !room      ? WatchdogEnd::kNoRoom
                : !allowed ? WatchdogEnd::kTooMuch
@@ -106,7 +106,7 @@ WatchdogSeen see_watchdog(BenchArm& bench, const WatchdogOrder& order, double si
   reports = 0;
   while (pushed && !outside &&
          way.size() < silent_from + static_cast<std::size_t>(3 * order.named / kSecond) &&
-         std::abs(way.back()) < kWatchdogWayMost) {
+         std::abs(way.back()) < kWatchdogWayMax) {
     // The driver's detection of its own silence is not checked here; missing reports are.
     faulted = !bench.run(kSilent, push, stop, true);
     if (faulted) break;
@@ -128,7 +128,7 @@ WatchdogSeen see_watchdog(BenchArm& bench, const WatchdogOrder& order, double si
   seen.time = kSecond * (kink(way, fastest(way)) - last_message) - order.delay;
   // The tip was still accelerating when it was released.
   const bool let_go =
-      std::abs(seen.way) >= kWatchdogWayMost && fastest(way) + 2 * kHalfWindow >= way.size();
+      std::abs(seen.way) >= kWatchdogWayMax && fastest(way) + 2 * kHalfWindow >= way.size();
   seen.end = !let_go                   ? WatchdogEnd::kSeen
              : seen.time < order.named ? WatchdogEnd::kLetGo
                                        : WatchdogEnd::kStillOn;
@@ -143,7 +143,7 @@ WatchdogTime watchdog_time(BenchArm& bench, const WatchdogOrder& order, double s
   for (int k = 0; k < kPushes; ++k) {
     found.last = {};
     if (!bench.device().activate() || !bench.run(soft_start + 0.05, rest, stop)) break;
-    found.last = see_watchdog(bench, order, k % 2 == 0 ? 1 : -1, stop);
+    found.last = observe_watchdog(bench, order, k % 2 == 0 ? 1 : -1, stop);
     if (found.last.end != WatchdogEnd::kSeen) break;
     times.push_back(found.last.time);
   }

@@ -15,7 +15,7 @@ struct WatchdogOrder {
   double coulomb = 0;               ///< Dry friction per axis, N.
   double delay = 0;                 ///< Delay from a force to the motion that the host sees, s.
   scene::WorkspaceBox workspace{};  ///< Region in which the arm may be pushed.
-  double force_most = 1;            ///< Max. requested force, N.
+  double max_force = 1;             ///< Max. requested force, N.
 };
 
 /// End of a search for the watchdog's time.
@@ -32,7 +32,7 @@ enum class WatchdogEnd {
 };
 
 /// Result of one push.
-struct WatchdogSeen {
+struct WatchdogPush {
   WatchdogEnd end = WatchdogEnd::kStopped;
   double time = 0;   ///< Time from the last message to the end of the force, s.
   double way = 0;    ///< Distance that the tip moved, m.
@@ -40,19 +40,19 @@ struct WatchdogSeen {
 };
 
 /// Max. distance of a free tip while the watchdog is awaited, m.
-inline constexpr double kWatchdogWayMost = 0.015;
+inline constexpr double kWatchdogWayMax = 0.015;
 
 /// Pushes a free tip with slightly more than its dry friction along y of the world (no weight acts
 /// there), `sign` 1 or -1, then stops sending. The tip's speed is greatest when the force ends. A
 /// tip that has moved 15 mm, or left the workspace, is released before that by a message of zero
 /// force. The device must be active, its soft start over; it is idle afterwards. Real-time: never
 /// from the servo thread.
-WatchdogSeen see_watchdog(BenchArm& bench, const WatchdogOrder& order, double sign,
-                          const std::atomic<bool>& stop);
+WatchdogPush observe_watchdog(BenchArm& bench, const WatchdogOrder& order, double sign,
+                              const std::atomic<bool>& stop);
 
 /// The watchdog's time from several pushes.
 struct WatchdogTime {
-  WatchdogSeen last;  ///< Last push; if its end is not kSeen, there is no time.
+  WatchdogPush last;  ///< Last push; if its end is not kSeen, there is no time.
   Estimate time;      ///< s
   int pushes = 0;     ///< Number of pushes that showed it.
 

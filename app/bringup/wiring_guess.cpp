@@ -58,21 +58,21 @@ WiringGuess guess_wiring(const Eigen::Matrix3d& seen,
 std::string describe_wiring(const WiringGuess& guess, const std::string& what,
                             const std::string& backwards, const std::string& dead) {
   std::string text;
-  const auto say = [&](const std::string& name, const std::string& does) {
+  const auto add_sentence = [&](const std::string& name, const std::string& does) {
     text.append(text.empty() ? "" : " ").append(name).append(" ").append(does);
   };
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const std::string name = what + ' ' + std::to_string(i + 1);
     if (guess.sign[k] == 0) {
-      say(name, dead + '.');
+      add_sentence(name, dead + '.');
       continue;
     }
     if (guess.source[k] != i) {
-      say(name,
-          "responds as " + std::to_string(guess.source[k] + 1) + " should. They are swapped.");
+      add_sentence(name, "responds as " + std::to_string(guess.source[k] + 1) +
+                             " should. They are swapped.");
     }
-    if (guess.sign[k] < 0) say(name, backwards + '.');
+    if (guess.sign[k] < 0) add_sentence(name, backwards + '.');
   }
   return text;
 }

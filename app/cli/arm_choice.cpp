@@ -14,24 +14,25 @@
 namespace thimble::cli {
 
 void ArmChoice::add_options(CLI::App& command) {
+  constexpr const char* kArm = "Arm";
   command
       .add_option("--device", device,
-                  simulates_unasked
-                      ? "Arm: auto, the plugged one, or the simulated one if there is none; a name "
-                        "that `thimble devices` lists; sim"
-                      : "Arm: auto, the plugged one; a name that `thimble devices` lists; sim, the "
-                        "simulated one")
-      ->capture_default_str();
-  add_arm_option(command, arm_file,
-                 "Its arm file; needed for a simulated arm, and for one that does not tell its "
-                 "model");
-  command.add_option("--firmware", firmware, "Firmware image for an arm that needs one")
-      ->check(CLI::ExistingFile);
+                  falls_back_to_simulation
+                      ? "auto (plugged in, else simulated), sim, or a name"
+                      : "auto (plugged in), sim, or a name (`thimble devices`)")
+      ->option_text("ARM")
+      ->capture_default_str()
+      ->group(kArm);
+  add_arm_option(command, arm_file, "Arm file, if simulated or if the arm reports no model")
+      ->group(kArm);
+  command.add_option("--firmware", firmware, "Firmware image, for arms that need one")
+      ->check(CLI::ExistingFile)
+      ->group(kArm);
 }
 
 void ArmChoice::add_real_time_option(CLI::App& command) {
-  command.add_flag("--no-real-time", no_real_time,
-                   "Push a real arm although the loop gets no real-time priority");
+  command.add_flag("--no-real-time", no_real_time, "Run a real arm without real-time priority")
+      ->group("Arm");
 }
 
 driver::Result<void> check_priority(const ArmChoice& choice, const ChosenArm& chosen) {
@@ -51,22 +52,21 @@ driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration)
     if (plugged_in && !chosen.real_arm) left = scene::boards_left_out(*plugged_in);
   }
   if (!chosen.real_arm) {
-    if (choice.device != "sim" && !choice.simulates_unasked) {
+    if (choice.device != "sim" && !choice.falls_back_to_simulation) {
       return driver::Error{
-          "No arm is plugged in that is known for sure (thimble devices). Plug it in, or name the "
-          "simulated one: --device sim --arm NAME (thimble run --list)." +
+          "No known arm is plugged in (see `thimble devices`). Plug it in, or use a simulated arm: "
+          "--device sim --arm NAME (see `thimble run --list`)." +
           (left.empty() ? "" : " " + left)};
     }
     if (choice.arm_file.empty() && choice.device == "sim") {
       return driver::Error{
-          "--device sim needs to know which arm to simulate: add --arm NAME, such as --arm "
-          "vintage_phantom; `thimble run --list` lists the arms."};
+          "--device sim requires an arm file. Add --arm NAME, for example --arm vintage_phantom; "
+          "`thimble run --list` lists the arms."};
     }
     if (choice.arm_file.empty()) {
       return driver::Error{
-          std::string("No arm is plugged in that can be told for sure (thimble devices). Plug it "
-                      "in, or say "
-                      "which one is to be simulated: --arm NAME (thimble run --list).") +
+          std::string("No known arm is plugged in (see `thimble devices`). Plug it in, or use a "
+                      "simulated arm: --arm NAME (see `thimble run --list`).") +
           (left.empty() ? "" : " " + left)};
     }
     auto file = scene::load_arm(choice.arm_file);
@@ -74,7 +74,7 @@ driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration)
     chosen.file = std::move(file).value();
     chosen.path = choice.arm_file;
     chosen.name = "sim";
-    if (!left.empty()) chosen.told.push_back(left);
+    if (!left.empty()) chosen.messages.push_back(left);
     return chosen;
   }
   auto found = scene::find_real_arm_file(
@@ -83,9 +83,9 @@ driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration)
   chosen.file = std::move(found->file);
   chosen.path = found->path;
   chosen.name = chosen.real_arm->name();
-  chosen.told.push_back("Arm " + chosen.name + ", arm file: " + found->path.string() + " (" +
-                        found->why + ").");
-  chosen.told.insert(chosen.told.end(), found->told.begin(), found->told.end());
+  chosen.messages.push_back("Arm " + chosen.name + ", arm file: " + found->path.string() + " (" +
+                            found->why + ").");
+  chosen.messages.insert(chosen.messages.end(), found->warnings.begin(), found->warnings.end());
   return chosen;
 }
 
@@ -95,8 +95,7 @@ ExitCode exit_code_of(const ArmChoice& refused) {
 
 SimulatedNote::SimulatedNote(const ChosenArm& arm, const char* kept) {
   if (arm.real_arm) return;
-  line_ =
-      "SIMULATED: no arm is used but the simulated " + arm.file.name + "; no " + kept + " is kept.";
+  line_ = "SIMULATED: the arm is a simulated " + arm.file.name + "; no " + kept + " is saved.";
   print();
 }
 

@@ -19,7 +19,7 @@ struct ArmChoice {
   std::string firmware;
   /// Whether the simulated arm is used if no arm is plugged in. If false, only --device sim selects
   /// it.
-  bool simulates_unasked = true;
+  bool falls_back_to_simulation = true;
   bool no_real_time = false;  ///< Apply forces with a real arm without real-time priority.
 
   /// Adds --device, --arm and --firmware to a command.
@@ -33,14 +33,14 @@ struct ChosenArm {
   scene::ArmFile file;                       ///< Arm file. For a real arm it includes the
                                              ///< calibration, if wanted.
   std::filesystem::path path;                ///< Path of `file`.
-  std::vector<std::string> told;             ///< Which file a real arm uses, and why.
-  std::optional<driver::FoundArm> real_arm;  ///< empty: the simulated arm
+  std::vector<std::string> messages;         ///< Which file a real arm uses, and why.
+  std::optional<driver::FoundArm> real_arm;  ///< The real arm; none if simulated.
   std::string name;                          ///< FoundArm::name, or "sim"
 };
 
 /// Finds the arm that a choice selects and reads its file. A plugged arm comes first, with its
 /// calibration unless it is chosen `for_calibration`; otherwise the simulated arm of --arm is used.
-/// The error says what to do. Real-time: never from the servo thread.
+/// The error contains the remedy. Real-time: never from the servo thread.
 driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration);
 
 /// Fails if the arm is real and the loop gets no real-time priority, as `run` does, before an arm

@@ -11,7 +11,8 @@
 #include "bringup/bench_arm.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
+#include "cli/usage/help_text.h"
 #include "enter_key.h"
 #include "log/logger.h"
 #include "log/printed_text.h"
@@ -44,102 +45,104 @@ Eigen::Vector3d home_of(const scene::ArmFile& file) {
 }
 
 /// Waits for the user to press Enter; kExitDone once it is pressed.
-int wait_for_word() {
+int wait_for_enter() {
   std::fflush(stdout);
   const std::atomic<bool>& stop = scene::catch_interrupts();
   session::EnterKey key = session::EnterKey::kNothing;
-  while ((key = session::look_for_enter()) == session::EnterKey::kNothing) {
+  while ((key = session::check_enter_key()) == session::EnterKey::kNothing) {
     if (stop.load()) return kExitInterrupted;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   if (key == session::EnterKey::kPressed) return kExitDone;
-  return complain({"Nobody is at the terminal, so nothing was done."}, kExitBadInput);
+  return report_error({"Standard input is closed, so nothing was done. Run it at a terminal."},
+                      kExitBadInput);
 }
 
 /// Prints the result of the library's calibration.
-int tell_calibrated(const driver::Result<void>& done, const std::string& name) {
-  if (!done) return complain(done.error(), kExitFault);
+int report_calibration(const driver::Result<void>& done, const std::string& name) {
+  if (!done) return report_error(done.error(), kExitFault);
   scene::print_format("Done. Check it: thimble feel-check --device %s\n", name.c_str());
   return kExitDone;
 }
 
 /// Calibrates a Touch by its library, after the user has done the manual step.
-int let_library_calibrate(const std::string& name) {
+int calibrate_by_library(const std::string& name) {
   const auto library = driver::hd::library();
-  if (!library) return complain(library.error(), kExitNoDevice);
+  if (!library) return report_error(library.error(), kExitNoDevice);
   const auto how = driver::hd::how_to_calibrate(*library);
-  if (!how) return complain(how.error(), kExitNoDevice);
+  if (!how) return report_error(how.error(), kExitNoDevice);
   scene::print_format("%s Press Enter.\n", how->c_str());
-  if (const int word = wait_for_word(); word != kExitDone) return word;
-  return tell_calibrated(driver::hd::calibrate(*library), name);
+  if (const int entered = wait_for_enter(); entered != kExitDone) return entered;
+  return report_calibration(driver::hd::calibrate(*library), name);
 }
 
 /// Lets an arm of Force Dimension find its zero, after the user has agreed to the motion.
-int let_find_zero(const std::string& name) {
+int find_zero_by_library(const std::string& name) {
   const auto library = driver::dhd::library();
-  if (!library) return complain(library.error(), kExitNoDevice);
+  if (!library) return report_error(library.error(), kExitNoDevice);
   scene::print_format(
-      "The arm will MOVE BY ITSELF until it has found its zero. Clear its workspace, let it go, "
-      "and "
-      "press Enter.\n");
-  if (const int word = wait_for_word(); word != kExitDone) return word;
-  return tell_calibrated(driver::dhd::find_zero(*library), name);
+      "The arm will MOVE BY ITSELF until it has found its zero. Clear its workspace, let go of it, "
+      "and press Enter.\n");
+  if (const int entered = wait_for_enter(); entered != kExitDone) return entered;
+  return report_calibration(driver::dhd::find_zero(*library), name);
 }
 
 int calibrate(const ArmChoice& choice, bool dry_run) {
   auto chosen = resolve(choice, true);
-  if (!chosen) return complain(chosen.error(), exit_code_of(choice));
+  if (!chosen) return report_error(chosen.error(), exit_code_of(choice));
   if (chosen->real_arm && chosen->real_arm->kind == driver::ArmKind::kDhd && !dry_run) {
-    return let_find_zero(chosen->name);
+    return find_zero_by_library(chosen->name);
   }
   if (chosen->real_arm && chosen->real_arm->kind == driver::ArmKind::kHd && !dry_run) {
-    return let_library_calibrate(chosen->name);
+    return calibrate_by_library(chosen->name);
   }
   const driver::ArmRow* row = driver::row_of(chosen->file.protocol);
   if (row != nullptr && row->has_own_link()) {
-    return complain(
+    return report_error(
         {"The arm " + chosen->name + " (" + chosen->file.name +
-         ") is calibrated by its vendor's own software, and Thimble takes its positions "
-         "as they come. Calibrate it there, then check it: thimble feel-check --device " +
+         ") is calibrated by the vendor's software; Thimble uses its positions unchanged. "
+         "Calibrate it there, then check it: thimble feel-check --device " +
          chosen->name},
         kExitBadInput);
   }
   const SimulatedNote simulated(*chosen, "calibration");
-  for (const std::string& sentence : chosen->told) scene::print_format("%s\n", sentence.c_str());
+  for (const std::string& sentence : chosen->messages)
+    scene::print_format("%s\n", sentence.c_str());
   const auto way =
       chosen->real_arm ? decltype(simulated_hand({})){} : simulated_hand(home_of(chosen->file));
   const std::atomic<bool>& stop = scene::catch_interrupts();
-  if (chosen->real_arm) scene::leave_rather_than_stop();
-  const scene::LeavingGuard guard;
+  if (chosen->real_arm) scene::treat_sigtstp_as_exit();
+  const scene::ForceExitGuard guard;
   // The force is zero throughout. The limit is only needed to open the device.
   auto bench = bringup::BenchArm::open(chosen->file, chosen->real_arm, choice.firmware, way, 0.1);
-  if (!bench) return complain(bench.error(), kExitNoDevice);
+  if (!bench) return report_error(bench.error(), kExitNoDevice);
 
-  constexpr std::array<const char*, 4> kAsks = {
-      "Put the arm into its home pose.", "From there, move the grip about 5 cm towards you.",
-      "Back home, then about 5 cm to your right.", "Back home, then about 5 cm up."};
+  constexpr std::array<const char*, 4> kPrompts = {
+      "Put the arm into its home pose.", "Move the grip about 5 cm towards you.",
+      "Return to the home pose, then move about 5 cm to your right.",
+      "Return to the home pose, then move about 5 cm up."};
   constexpr std::array<double, 4> kSimulatedTimes = {1, 3.5, 7.5, 11.5};  // s
   std::array<driver::ArmReading, 4> readings;
-  for (std::size_t i = 0; i < kAsks.size(); ++i) {
-    scene::print_format("%s%s\n", kAsks[i],
+  for (std::size_t i = 0; i < kPrompts.size(); ++i) {
+    scene::print_format("%s%s\n", kPrompts[i],
                         chosen->real_arm ? " Hold it there and press Enter." : "");
     session::EnterKey key = session::EnterKey::kNothing;
     const auto done = [&] {
       if (!chosen->real_arm) return (*bench)->now() >= kSimulatedTimes[i];
-      return (key = session::look_for_enter()) != session::EnterKey::kNothing;
+      return (key = session::check_enter_key()) != session::EnterKey::kNothing;
     };
     if (!(*bench)->hold(done, stop)) {
       if (stop.load()) return kExitInterrupted;
-      return complain({std::string(driver::describe((*bench)->device().fault()))}, kExitFault);
+      return report_error({std::string(driver::describe((*bench)->device().fault()))}, kExitFault);
     }
     if (key == session::EnterKey::kClosed)
-      return complain({"Nobody is at the terminal."}, kExitBadInput);
+      return report_error({"Standard input is closed. Run it at a terminal."}, kExitBadInput);
     readings[i].counts = (*bench)->device().state().counts;
   }
   const driver::ArmKind kind = chosen->real_arm ? chosen->real_arm->kind : chosen->file.protocol;
   auto found = scene::find_calibration(chosen->file, kind, readings[0],
                                        {readings[1], readings[2], readings[3]});
-  if (!found) return complain(found.error(), kExitTrouble);
+  if (!found) return report_error(found.error(), kExitTrouble);
   scene::print_format("home_counts  %d %d %d\nencoder_sign %d %d %d\nmotor_sign   %d %d %d\n",
                       found->home_counts[0], found->home_counts[1], found->home_counts[2],
                       found->encoder_sign[0], found->encoder_sign[1], found->encoder_sign[2],
@@ -147,13 +150,13 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
   if (dry_run || !chosen->real_arm) return kExitDone;
   found->arm_file = chosen->path.stem().string();
   if (auto saved = scene::save_calibration(chosen->name, *found); !saved) {
-    return complain(saved.error(), kExitTrouble);
+    return report_error(saved.error(), kExitTrouble);
   }
-  scene::logger().info("{} is calibrated: home_counts {} {} {}, kept in {}.", chosen->name,
+  scene::logger().info("{} is calibrated: home_counts {} {} {}, saved in {}.", chosen->name,
                        found->home_counts[0], found->home_counts[1], found->home_counts[2],
                        scene::calibration_file(chosen->name).string());
   scene::print_format(
-      "Kept in %s, with the arm file %s. Check it: thimble feel-check --device %s\n",
+      "Saved in %s, for the arm file %s. Check it: thimble feel-check --device %s\n",
       scene::calibration_file(chosen->name).c_str(), found->arm_file.c_str(), chosen->name.c_str());
   return kExitDone;
 }
@@ -162,11 +165,12 @@ int calibrate(const ArmChoice& choice, bool dry_run) {
 
 void add_calibrate_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
-      app.add_subcommand("calibrate", "Find an arm's home pose and the signs of its encoders");
+      app.add_subcommand("calibrate", "Find the home pose of an arm and the signs of its encoders");
   auto choice = std::make_shared<ArmChoice>();
   auto dry_run = std::make_shared<bool>(false);
   choice->add_options(*command);
-  command->add_flag("--dry-run", *dry_run, "Show what was found, keep nothing");
+  command->add_flag("--dry-run", *dry_run, "Print the result without saving it");
+  add_example(*command, "thimble calibrate --device auto");
   command->callback([choice, dry_run, &exit_code] { exit_code = calibrate(*choice, *dry_run); });
 }
 

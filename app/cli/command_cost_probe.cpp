@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "log/printed_text.h"
 #include "studies/accuracy/gating/gating.h"
 #include "studies/accuracy/probed_stroke.h"
@@ -38,7 +38,7 @@ int probe(const ProbeOptions& options) {
     if (subject.name != options.subject) continue;
     const auto touch = subject.build();
     if (!touch) {
-      return complain(touch.error(), kExitBadInput);
+      return report_error(touch.error(), kExitBadInput);
     }
     const auto states = studies::ring_stroke(studies::kCostRing, studies::kStrokeTicks, 0.001);
     double sum = 0;
@@ -48,7 +48,8 @@ int probe(const ProbeOptions& options) {
     scene::print_format("%.17g\n", sum);
     return kExitDone;
   }
-  return complain({"cost-probe knows no \"" + options.subject + "\"."}, kExitBadInput);
+  return report_error({"SUBJECT: cost-probe has no subject \"" + options.subject + "\"."},
+                      kExitBadInput);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "thimble/driver/discovery.h"
 #include "transports/node_lock.h"
@@ -14,8 +15,8 @@ namespace {
 
 std::string state_of(const driver::FoundArm& arm, const std::string& root) {
   if (arm.certainty == driver::Certainty::kUnsupported) return "its protocol is not public";
-  if (!arm.trouble.empty()) return "not to be used now: thimble doctor";
-  if (arm.node.empty()) return "no driver has it: thimble doctor";
+  if (!arm.trouble.empty()) return "cannot be used: thimble doctor";
+  if (arm.node.empty()) return "no kernel driver: thimble doctor";
   if (arm.board == driver::BoardKind::kHaplyService &&
       arm.certainty == driver::Certainty::kUnknown) {
     return "thimble exec --serve haply: no Inverse3";
@@ -42,18 +43,20 @@ int list_devices(const std::string& root) {
                         arm.address.c_str(), arm.node.empty() ? "-" : arm.node.c_str(),
                         state_of(arm, root).c_str());
   }
-  if (arms->empty()) scene::print_format("No arm that Thimble knows is plugged in on USB.\n");
+  if (arms->empty()) scene::print_format("No known arm is plugged in on USB.\n");
   return kExitDone;
 }
 
 }  // namespace
 
 void add_devices_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("devices", "List the arms: simulated, and plugged in");
+  CLI::App* command =
+      app.add_subcommand("devices", "List the simulated arm and the arms that are plugged in");
   auto root = std::make_shared<std::string>("/");
-  command->add_option("--root", *root, "List the machine below this folder")
+  command->add_option("--root", *root, "Root folder of the system to examine")
       ->check(CLI::ExistingDirectory)
       ->capture_default_str();
+  add_example(*command, "thimble devices");
   command->callback([root, &exit_code] { exit_code = list_devices(*root); });
 }
 

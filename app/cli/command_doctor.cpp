@@ -8,6 +8,7 @@
 #include "bringup/doctor_files.h"
 #include "cli/commands.h"
 #include "cli/exit_code.h"
+#include "cli/usage/help_text.h"
 #include "files/data_folders.h"
 #include "log/logger.h"
 #include "log/printed_text.h"
@@ -31,7 +32,7 @@ int show_findings(const std::string& root) {
       ++problems;
     }
     scene::print_format("%s%s\n", mark, finding.what.c_str());
-    if (!finding.mend.empty()) scene::print_format("          -> %s\n", finding.mend.c_str());
+    if (!finding.remedy.empty()) scene::print_format("          -> %s\n", finding.remedy.c_str());
   }
   if (problems == 0) return kExitDone;
   scene::print_format("%d problem%s.\n", problems, problems == 1 ? "" : "s");
@@ -42,11 +43,12 @@ int show_findings(const std::string& root) {
 
 void add_doctor_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
-      app.add_subcommand("doctor", "Say why an arm cannot be used, and what mends it");
+      app.add_subcommand("doctor", "Diagnose problems of arms and system, and print the fixes");
   auto root = std::make_shared<std::string>("/");
-  command->add_option("--root", *root, "Examine the machine below this folder")
+  command->add_option("--root", *root, "Root folder of the system to examine")
       ->check(CLI::ExistingDirectory)
       ->capture_default_str();
+  add_example(*command, "thimble doctor");
   command->callback([root, &exit_code] { exit_code = show_findings(*root); });
 }
 

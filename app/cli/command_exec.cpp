@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/options/ros_options.h"
+#include "cli/report_error.h"
 #include "cli/usage/usage_error.h"
 #include "compat/core/open_channel.h"
 #include "compat/haply/haply_service.h"
@@ -40,7 +40,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-struct Asked {
+struct ExecRequest {
   compat::ExecOptions options;
   std::vector<std::string> arms, devices;
   std::string clock = "wall";
@@ -55,10 +55,11 @@ driver::Result<void> take_topics(RosArguments ros, compat::ExecOptions& options)
   if (!ros.asked) return {};
   if (auto fits = check_ros_arguments(ros); !fits) return fits;
   if (ros.options.force != ros2::RosForce::kNone) {
-    return driver::Error{"--ros-force: the program asks for the forces; leave it away."};
+    return driver::Error{
+        "--ros-force cannot be used here: the program commands the forces. Remove it."};
   }
   if (options.paced) {
-    return driver::Error{"--ros2 tells of a run in real time: leave --clock virtual away."};
+    return driver::Error{"--ros2 requires real time. Remove --clock virtual."};
   }
   if (auto there = ros2::check_ros_module(); !there) return there;
   options.topics = ros.options;
@@ -69,7 +70,7 @@ driver::Result<void> take_topics(RosArguments ros, compat::ExecOptions& options)
 constexpr const char* kPortVariable = "THIMBLE_HAPLY_PORT";
 
 /// Joins the lists of --arm and --device: the first of each describes the program's first arm.
-std::vector<compat::ExecArm> arms_of(const Asked& asked) {
+std::vector<compat::ExecArm> arms_of(const ExecRequest& asked) {
   std::vector<compat::ExecArm> arms(
       std::max<std::size_t>({1, asked.arms.size(), asked.devices.size()}));
   for (std::size_t i = 0; i < asked.arms.size(); ++i) arms[i].arm_file = asked.arms[i];
@@ -115,7 +116,7 @@ int start(std::vector<std::string> command, std::vector<std::string> variables, 
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   // Restores the default actions of the signals that this process ignores
-  // (outlive_trouble_with_files).
+  // (ignore_sigpipe_and_sigxfsz).
   sigset_t own;
   sigemptyset(&own);
   sigaddset(&own, SIGPIPE);
@@ -131,13 +132,13 @@ int start(std::vector<std::string> command, std::vector<std::string> variables, 
 /// Serves the program until it ends, and returns its status (waitpid). An interrupt ends first the
 /// forces, then the program.
 int serve(compat::ArmServer& server, pid_t child, const std::atomic<bool>& stop) {
-  constexpr std::int64_t kLook_ns = 20'000'000;
-  constexpr auto kPatience = std::chrono::milliseconds(500);
-  constexpr auto kLongest = std::chrono::seconds(5);
+  constexpr std::int64_t kPollTime_ns = 20'000'000;
+  constexpr auto kTermDelay = std::chrono::milliseconds(500);
+  constexpr auto kKillDelay = std::chrono::seconds(5);
   Clock::time_point stopped{};
   bool asked = false, killed = false;
   for (int status = 0;;) {
-    server.step(kLook_ns);
+    server.step(kPollTime_ns);
     if (waitpid(child, &status, WNOHANG) == child) return status;
     if (!stop.load() && !server.ended_by_viewer()) continue;
     if (stopped == Clock::time_point{}) {
@@ -145,29 +146,29 @@ int serve(compat::ArmServer& server, pid_t child, const std::atomic<bool>& stop)
       server.end();
     }
     const auto since = Clock::now() - stopped;
-    if (!asked && since > kPatience) asked = kill(child, SIGTERM) == 0;
-    if (!killed && since > kLongest) killed = kill(child, SIGKILL) == 0;
+    if (!asked && since > kTermDelay) asked = kill(child, SIGTERM) == 0;
+    if (!killed && since > kKillDelay) killed = kill(child, SIGKILL) == 0;
   }
 }
 
 /// Serves programs started separately, until the user or a viewer ends it.
 void serve_all(compat::ArmServer& server, const std::atomic<bool>& stop) {
-  constexpr std::int64_t kLook_ns = 20'000'000;
-  while (!stop.load() && !server.ended_by_viewer()) server.step(kLook_ns);
+  constexpr std::int64_t kPollTime_ns = 20'000'000;
+  while (!stop.load() && !server.ended_by_viewer()) server.step(kPollTime_ns);
   server.end();
 }
 
 /// Ends the service. A client that still waits for an arm gets its answer first.
 void end(compat::haply::Service& service, compat::ArmServer& server) {
-  constexpr std::int64_t kLook_ns = 1'000'000;
+  constexpr std::int64_t kPollTime_ns = 1'000'000;
   service.leave();
-  while (!service.ended()) server.step(kLook_ns);
+  while (!service.ended()) server.step(kPollTime_ns);
 }
 
 int exit_code_of(const compat::ArmServer& server, int status, bool stopped) {
   if (WIFSIGNALED(status)) {
     if (stopped) return kExitInterrupted;
-    scene::logger().error("The program was ended by signal {} ({}).", WTERMSIG(status),
+    scene::logger().error("The program was terminated by signal {} ({}).", WTERMSIG(status),
                           strsignal(WTERMSIG(status)));
     return 128 + WTERMSIG(status);
   }
@@ -177,7 +178,7 @@ int exit_code_of(const compat::ArmServer& server, int status, bool stopped) {
 }
 
 /// Makes the service and opens its arms; `code`: exit code for the error.
-driver::Result<std::unique_ptr<compat::haply::Service>> make_service(const Asked& asked,
+driver::Result<std::unique_ptr<compat::haply::Service>> make_service(const ExecRequest& asked,
                                                                      compat::ArmServer& server,
                                                                      ExitCode& code) {
   compat::use_channel(&server.channel(), server.address());
@@ -185,12 +186,12 @@ driver::Result<std::unique_ptr<compat::haply::Service>> make_service(const Asked
   auto service = compat::haply::Service::listen(
       asked.port, [](const std::string& sentence) { scene::logger().warn("{}", sentence); });
   if (!service) return service;
-  constexpr std::int64_t kLook_ns = 1'000'000;
-  while (!(*service)->ready()) server.step(kLook_ns);
+  constexpr std::int64_t kPollTime_ns = 1'000'000;
+  while (!(*service)->ready()) server.step(kPollTime_ns);
   if (server.runs() < static_cast<int>(arms_of(asked).size())) {
     end(**service, server);
     code = kExitNoDevice;
-    return driver::Error{"Not all arms could be opened, so no program is served."};
+    return driver::Error{"Not all arms could be opened, so the service was not started."};
   }
   return service;
 }
@@ -198,23 +199,25 @@ driver::Result<std::unique_ptr<compat::haply::Service>> make_service(const Asked
 /// Prints a possible reason why a program opened no arm.
 void warn_of_no_arm(const std::string& program, const fs::path& libraries) {
   scene::logger().warn(
-      "{} opened no arm. It found libraries of its own (ldd, rpath), or it is written for none "
-      "of those that are stood in for: {}",
+      "{} opened no arm. Either it loads other libraries (check with ldd, rpath), or it uses none "
+      "of the libraries in {}",
       program, libraries.string());
 }
 
-int run_program(const Asked& asked, const std::vector<std::string>& command) {
+int run_program(const ExecRequest& asked, const std::vector<std::string>& command) {
   const bool serves = !asked.serve.empty();
   if (command.empty() && !serves) {
-    return complain({"Which program? thimble exec [OPTIONS] [--] PROGRAM ARGUMENTS..."},
-                    kExitBadInput);
+    return report_error(
+        {"PROGRAM is missing. Usage: thimble exec [OPTIONS] [--] PROGRAM ARGUMENTS..."},
+        kExitBadInput);
   }
   const auto hold = session::hold_named(asked.hold_to_run);
-  if (!hold) return complain({"--hold-to-run: " + hold.error().message}, kExitBadInput);
+  if (!hold) return report_error({"--hold-to-run: " + hold.error().message}, kExitBadInput);
   if (hold->by_caller) {
-    return complain({"--hold-to-run key: the terminal is the program's; hold a button of the arm: "
-                     "--hold-to-run button."},
-                    kExitBadInput);
+    return report_error(
+        {"--hold-to-run key cannot be used here: the terminal belongs to the program. Use a "
+         "button of the arm: --hold-to-run button."},
+        kExitBadInput);
   }
   output::OutputPlan plan;
   for (const fs::path& file : scene::scene_inputs(asked.options.scene)) plan.read(file);
@@ -222,33 +225,34 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
   plan.read(asked.options.hand);
   plan.read(asked.options.firmware);
   plan.write("--record", asked.options.record, session::kRecordingOutput, asked.options.overwrite);
-  if (const auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
-  const auto libraries = compat::face_folder();
-  if (!libraries) return complain(libraries.error(), kExitTrouble);
+  if (const auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
+  const auto libraries = compat::library_folder();
+  if (!libraries) return report_error(libraries.error(), kExitTrouble);
   compat::ExecOptions options = asked.options;
   options.program = command.empty() ? asked.serve : fs::path(command.front()).filename().string();
   options.arms = arms_of(asked);
   options.paced = asked.clock == "virtual";
   options.hold = *hold;
   if (auto taken = take_topics(asked.ros, options); !taken) {
-    return complain(taken.error(), kExitBadInput);
+    return report_error(taken.error(), kExitBadInput);
   }
   const std::atomic<bool>& stop = scene::catch_interrupts();
   for (const compat::ExecArm& arm : options.arms) {
-    if (arm.device != "sim") scene::leave_rather_than_stop();
+    if (arm.device != "sim") scene::treat_sigtstp_as_exit();
   }
   auto made = compat::ArmServer::make(options, stop);
-  if (!made) return complain(made.error(), kExitBadInput);
+  if (!made) return report_error(made.error(), kExitBadInput);
   compat::ArmServer& server = **made;
-  const scene::LeavingGuard guard;
+  const scene::ForceExitGuard guard;
   std::unique_ptr<compat::haply::Service> service;
   if (serves) {
     ExitCode code = kExitDone;
     auto serving = make_service(asked, server, code);
-    if (!serving) return complain(serving.error(), code);
+    if (!serving) return report_error(serving.error(), code);
     service = std::move(serving).value();
-    scene::terminal().info("Programs of the Inverse3 find the arm at ws://localhost:{}.{}",
-                           service->port(), command.empty() ? " Ctrl-C ends it." : "");
+    scene::terminal().info(
+        "Programs of the Inverse3 can connect to the arm at ws://localhost:{}.{}", service->port(),
+        command.empty() ? " Press Ctrl-C to stop." : "");
   }
   int status = 0;
   if (command.empty()) {
@@ -259,8 +263,8 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
         start(command, environment(*libraries, server.address(), service.get()), child);
     if (error != 0) {
       if (service) end(*service, server);
-      return complain({command.front() + " cannot be started: " + std::strerror(error) + "."},
-                      kExitBadInput);
+      return report_error({command.front() + " cannot be started: " + std::strerror(error) + "."},
+                          kExitBadInput);
     }
     status = serve(server, child, stop);
   }
@@ -269,7 +273,7 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
   // Standard output belongs to the program, so this goes to standard error.
   session::print(stderr, "{}", server.report());
   if (service && service->programs() == 0) {
-    scene::logger().warn("No program came to ws://localhost:{}.", service->port());
+    scene::logger().warn("No program connected to ws://localhost:{}.", service->port());
   } else if (server.runs() == 0) {
     warn_of_no_arm(options.program, *libraries);
   }
@@ -279,73 +283,91 @@ int run_program(const Asked& asked, const std::vector<std::string>& command) {
 }  // namespace
 
 void add_exec_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
-      "exec",
-      "Run a program that was written for another maker's arm (HDAPI, DHD, CHAI3D, Inverse3)");
-  auto asked = std::make_shared<Asked>();
+  CLI::App* command =
+      app.add_subcommand("exec", "Run a program that was written for another maker's arm");
+  auto asked = std::make_shared<ExecRequest>();
   compat::ExecOptions& options = asked->options;
   command->prefix_command();
   command->footer(
-      "Options stand before PROGRAM; what follows it is its own.\n"
-      "The program finds libHD, libhdPhantom, libdhd and libdrd of ours in front of others. Its\n"
-      "forces go through the gate of ours. A simulated arm is used unless --device names one.\n"
-      "With --serve haply, programs of the Inverse3 find it as they find their vendor's service;\n"
-      "without PROGRAM they are served until Ctrl-C.\n"
-      "Exit code: the program's; 4 if it was 0 and a force went off with a fault.");
-  command
-      ->add_option("--arm", asked->arms,
-                   "Arm file or name; again for a second arm (`thimble run --list`)")
-      ->allow_extra_args(false);
+      "Example: thimble exec --arm vintage_phantom ./my_program\n\n"
+      "Write the options before PROGRAM; the words after it are passed to the program.\n"
+      "Supported APIs: HDAPI, DHD, CHAI3D and the service of the Inverse3. The program\n"
+      "loads Thimble's libHD, libhdPhantom, libdhd and libdrd instead of the vendor's.\n"
+      "Its forces pass the safety gate. Without --device the arm is simulated.\n"
+      "With --serve haply, programs of the Inverse3 find the arm as they find the\n"
+      "vendor's service; without PROGRAM they are served until Ctrl-C.\n\n"
+      "--arm, --device  Repeat for a second arm.\n"
+      "--hand           path: the path in the scene. mouse: the viewer moves it. FILE:\n"
+      "                 lines \"t x y z\" (s, m), or a ROS bag.\n"
+      "--clock          virtual: each tick waits for the program, so that the program\n"
+      "                 does the same each time (simulated arms only).\n"
+      "--hold-to-run    button (the first of the arm), or button2 to button16.\n" +
+      std::string(kRosNotes) +
+      "\n\n"
+      "Exit code: the program's; 4 if it was 0 and a fault switched the force off.");
+  constexpr const char* kArm = "Arm";
+  command->add_option("--arm", asked->arms, "Arm file or name (`thimble run --list`)")
+      ->allow_extra_args(false)
+      ->option_text("NAME|FILE")
+      ->group(kArm);
   command
       ->add_option("--device", asked->devices,
-                   "Arm to use: sim, auto, or a name that `thimble devices` lists; again for a "
-                   "second arm")
-      ->allow_extra_args(false);
-  command->add_option("--scene", options.scene,
-                      "Scene whose objects are felt as well: both forces add up");
+                   "Arm to use: sim, auto, or a name from `thimble devices`")
+      ->allow_extra_args(false)
+      ->option_text("ARM")
+      ->group(kArm);
+  command->add_option("--firmware", options.firmware, "Firmware image, for arms that need one")
+      ->check(CLI::ExistingFile)
+      ->group(kArm);
+  command->add_flag("--yes", options.yes, "Enable the forces of a real arm without asking")
+      ->group(kArm);
   command
-      ->add_option(
-          "--hand", options.hand,
-          "Who leads the simulated hand: path, as the scene says; mouse, by the viewer; or "
-          "a file with lines \"t x y z\" (s, m), or a ROS bag")
-      ->capture_default_str();
+      ->add_flag("--unchecked", options.unchecked,
+                 "Allow full force without a feel check (else 0.5 N)")
+      ->group(kArm);
+  command->add_flag("--homed", options.homed, "Trust that the arm was powered on in its home pose")
+      ->group(kArm);
+  command->add_option("--hold-to-run", asked->hold_to_run, "Enable forces only while it is held")
+      ->option_text("BUTTON")
+      ->group(kArm);
   command
-      ->add_option(
-          "--clock", asked->clock,
-          "wall: in real time; virtual: each tick waits until the program waits for it, so "
-          "that a program does the same each time (simulated arms only)")
+      ->add_flag("--no-real-time", options.no_real_time,
+                 "Run a real arm without real-time priority")
+      ->group(kArm);
+  constexpr const char* kRun = "Run";
+  command->add_option("--scene", options.scene, "Scene whose forces are added to the program's")
+      ->option_text("NAME|FILE")
+      ->group(kRun);
+  command->add_option("--hand", options.hand, "What moves the simulated hand: path, mouse or FILE")
+      ->option_text("SOURCE")
+      ->capture_default_str()
+      ->group(kRun);
+  command
+      ->add_option("--clock", asked->clock, "Real time, or simulated time in step with the program")
       ->check(CLI::IsMember({"virtual", "wall"}))
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--serve", asked->serve,
-          "haply: show the arm as the service of an Inverse3 does (JSON over WebSocket, on "
-          "this computer alone)")
-      ->check(CLI::IsMember({"haply"}));
-  command->add_option("--port", asked->port, "Port of --serve; 0: any that is free")
-      ->capture_default_str();
-  CLI::Option* record =
-      command->add_option("--record", options.record, "Recording of every tick to write (HDF5)");
+      ->capture_default_str()
+      ->group(kRun);
+  command->add_flag("--view", options.view, "Show the run in a window")->group(kRun);
+  constexpr const char* kService = "Service";
+  command->add_option("--serve", asked->serve, "Serve JSON over WebSocket, on this computer only")
+      ->check(CLI::IsMember({"haply"}))
+      ->group(kService);
+  command->add_option("--port", asked->port, "Port of --serve; 0: any free port")
+      ->capture_default_str()
+      ->group(kService);
+  constexpr const char* kOutput = "Output";
+  CLI::Option* record = command->add_option("--record", options.record, "Record every tick (HDF5)")
+                            ->option_text("FILE")
+                            ->group(kOutput);
   command->add_flag("--force", options.overwrite, "Let --record replace existing recordings")
-      ->needs(record);
-  command->add_flag("--view", options.view, "Watch the run in a window");
+      ->needs(record)
+      ->group(kOutput);
   add_ros_options(*command, asked->ros, RosTime::kReal);
-  command->add_option("--firmware", options.firmware, "Firmware image for an arm that needs one")
-      ->check(CLI::ExistingFile);
-  command->add_flag("--yes", options.yes, "Give a real arm forces without asking");
-  command->add_flag("--unchecked", options.unchecked,
-                    "Give a real arm its whole force though `thimble feel-check` was not passed");
-  command->add_flag("--homed", options.homed, "A real arm was in its home pose when it got power");
-  command->add_option("--hold-to-run", asked->hold_to_run,
-                      "Give forces only while this button of the arm is held: button (the first), "
-                      "button2 to button16");
-  command->add_flag("--no-real-time", options.no_real_time,
-                    "Use a real arm though the loop gets no real-time priority");
   command->callback([asked, command, &exit_code] {
     const auto words = command->remaining();
     // A word with a dash before PROGRAM is an option of this command.
     exit_code = !words.empty() && words.front().starts_with('-') && words.front() != "--"
-                    ? complain({unknown_word(*command, words.front())}, kExitBadInput)
+                    ? report_error({unknown_word(*command, words.front())}, kExitBadInput)
                     : run_program(*asked, words);
   });
 }

@@ -5,7 +5,8 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
+#include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
 #include "recording/bag_export.h"
@@ -29,32 +30,32 @@ int export_recording(const ExportOptions& options) {
   plan.write("--csv", options.csv, output::kTable);
   plan.write_new_folder("--bag", options.bag);
   plan.write("--sound", options.sound, output::kSound);
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto recording = session::read_recording(options.file);
-  if (!recording) return complain(recording.error(), kExitBadInput);
-  const auto tell = [&recording](const std::string& file) {
+  if (!recording) return report_error(recording.error(), kExitBadInput);
+  const auto report_file = [&recording](const std::string& file) {
     scene::print_format("%s: %zu ticks of %s at %g Hz%s.\n", file.c_str(), recording->ticks.size(),
                         recording->info.scene.c_str(), recording->info.rate,
                         recording->complete ? "" : "; the recording was cut off");
   };
   if (!options.csv.empty()) {
     if (auto written = session::write_csv(*recording, options.csv); !written) {
-      return complain(written.error(), kExitTrouble);
+      return report_error(written.error(), kExitTrouble);
     }
-    tell(options.csv);
+    report_file(options.csv);
   }
   if (!options.bag.empty()) {
     if (auto written = session::export_bag(*recording, options.bag); !written) {
-      return complain(written.error(), kExitTrouble);
+      return report_error(written.error(), kExitTrouble);
     }
-    tell(options.bag);
+    report_file(options.bag);
   }
   if (!options.sound.empty()) {
     const auto samples = view::sound_of(recording->ticks, std::llround(1e9 / recording->info.rate));
     if (auto written = view::write_wav(samples, view::TouchSound::kRate, options.sound); !written) {
-      return complain(written.error(), kExitTrouble);
+      return report_error(written.error(), kExitTrouble);
     }
-    tell(options.sound);
+    report_file(options.sound);
   }
   return kExitDone;
 }
@@ -62,19 +63,21 @@ int export_recording(const ExportOptions& options) {
 }  // namespace
 
 void add_export_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
-      "export", "Write a recording as a table that any program reads, as a ROS bag, or as sound");
+  CLI::App* command =
+      app.add_subcommand("export", "Write a recording as a table, a ROS bag or a sound file");
   auto options = std::make_shared<ExportOptions>();
-  command->add_option("FILE", options->file, "Recording, made by `thimble run SCENE --record FILE`")
+  command->add_option("FILE", options->file, "Recording, from `thimble run SCENE --record FILE`")
       ->required();
-  CLI::Option_group* as = command->add_option_group("As what");
-  as->add_option("--csv", options->csv, "Table to write: a line per tick, SI units");
-  as->add_option("--bag", options->bag,
-                 "Folder to write: a bag of ROS 2 (SQLite) with /pose, /wrench (as sent) and "
-                 "/wrench_wanted (before the gate)");
-  as->add_option("--sound", options->sound,
-                 "WAV file to write: what was felt as sound, as `thimble view --sound` plays it");
+  CLI::Option_group* as = command->add_option_group("Output");
+  as->add_option("--csv", options->csv, "Table with one line per tick, in SI units")
+      ->option_text("FILE");
+  as->add_option("--bag", options->bag, "Folder for a ROS 2 bag (SQLite)")->option_text("DIR");
+  as->add_option("--sound", options->sound, "WAV file with the sound of the contact")
+      ->option_text("FILE");
   as->require_option(1, 3);
+  add_example(*command, "thimble export touch.h5 --csv touch.csv",
+              "The bag has /pose, /wrench (as sent) and /wrench_wanted (before the gate).\n"
+              "The sound is that of `thimble view --sound`.");
   command->callback([options, &exit_code] { exit_code = export_recording(*options); });
 }
 

@@ -1,12 +1,13 @@
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
+#include "cli/usage/help_text.h"
 #include "cli/usage/usage_error.h"
+#include "keys/key_schema.h"
 #include "log/printed_text.h"
 #include "scene_keys.h"
 
@@ -19,41 +20,58 @@ struct HelpOptions {
   bool page = false;
 };
 
+driver::Result<std::vector<scene::KeyNote>> keys_of(const std::string& file) {
+  if (file == "arm") return scene::arm_keys();
+  return scene::scene_keys();
+}
+
 int print_keys(const HelpOptions& options) {
-  std::vector<scene::KeyNote> keys;
-  if (options.file == "arm") {
-    keys = scene::arm_keys();
-  } else {
-    auto found = scene::scene_keys();
-    if (!found) return complain(found.error(), kExitBadInput);
-    keys = std::move(found).value();
-  }
+  const auto keys = keys_of(options.file);
+  if (!keys) return report_error(keys.error(), kExitBadInput);
   const std::string text =
-      options.page ? scene::key_page(keys) : scene::key_text(keys, options.key);
+      options.page ? scene::key_page(*keys) : scene::key_text(*keys, options.key);
   if (text.empty()) {
     std::vector<std::string> names;
-    for (const scene::KeyNote& key : keys) names.push_back(key.key);
-    return complain(driver::Error{"No key of " + options.file + " files is called \"" +
-                                  options.key + "\"; `thimble help " + options.file +
-                                  "` lists all." + suggestion(options.key, names)},
-                    kExitBadInput);
+    for (const scene::KeyNote& key : *keys) names.push_back(key.key);
+    return report_error(driver::Error{"KEY: there is no key \"" + options.key + "\" in " +
+                                      options.file + " files. `thimble help " + options.file +
+                                      "` lists all keys." + suggestion(options.key, names)},
+                        kExitBadInput);
   }
   scene::print_format("%s", text.c_str());
+  return kExitDone;
+}
+
+/// Prints the JSON Schema of scene or arm files, as `KEY` names them.
+int print_schema(const HelpOptions& options) {
+  const std::string file = options.key.empty() ? "scene" : options.key;
+  if (file != "scene" && file != "arm") {
+    return report_error(
+        driver::Error{"help schema: expected scene or arm, found \"" + options.key + "\"."},
+        kExitBadInput);
+  }
+  const auto keys = keys_of(file);
+  if (!keys) return report_error(keys.error(), kExitBadInput);
+  scene::print_format("%s", scene::key_schema(*keys, "Thimble " + file + " file").c_str());
   return kExitDone;
 }
 
 }  // namespace
 
 void add_help_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("help", "List the keys of scene and arm files, with units and limits");
+  CLI::App* command = app.add_subcommand(
+      "help", "List the keys of scene and arm files, with meaning, unit and limits");
   auto options = std::make_shared<HelpOptions>();
-  command->add_option("FILE", options->file, "Which kind of file: scene or arm")
-      ->check(CLI::IsMember({"scene", "arm"}))
+  command->add_option("FILE", options->file, "Kind of file; schema: a JSON Schema for editors")
+      ->check(CLI::IsMember({"scene", "arm", "schema"}))
       ->capture_default_str();
-  command->add_option("KEY", options->key, "Only keys of this name");
-  command->add_flag("--page", options->page, "As a page of the guide (Markdown)");
-  command->callback([options, &exit_code] { exit_code = print_keys(*options); });
+  command->add_option("KEY", options->key,
+                      "Print only keys of this name; with schema: scene or arm");
+  command->add_flag("--page", options->page, "Print a page of the guide (Markdown)");
+  add_example(*command, "thimble help scene stiffness");
+  command->callback([options, &exit_code] {
+    exit_code = options->file == "schema" ? print_schema(*options) : print_keys(*options);
+  });
 }
 
 }  // namespace thimble::cli

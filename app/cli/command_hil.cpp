@@ -18,8 +18,9 @@
 #include "arm_policy/feel_check_record.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/prompts/yes_question.h"
+#include "cli/report_error.h"
+#include "cli/usage/help_text.h"
 #include "enter_key.h"
 #include "hil/hil_files.h"
 #include "hil/hil_suite.h"
@@ -69,7 +70,7 @@ bringup::Prompt prompt_of(bool person, const std::atomic<bool>& stop) {
     std::fflush(stdout);
     session::EnterKey key = person ? session::EnterKey::kNothing : session::EnterKey::kPressed;
     while (key == session::EnterKey::kNothing && !stop.load()) {
-      key = session::look_for_enter();
+      key = session::check_enter_key();
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     return key == session::EnterKey::kPressed && !stop.load();
@@ -98,7 +99,7 @@ class SuiteClock {
     const std::lock_guard lock(mutex_);
     name_ = std::move(name);
     since_ = Clock::now();
-    said_ = 0;
+    progress_reports_ = 0;
   }
 
  private:
@@ -113,18 +114,18 @@ class SuiteClock {
         timed_out_.store(true);
         stop_.store(true);
       }
-      say_progress();
+      print_progress();
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   }
 
-  void say_progress() {
+  void print_progress() {
     constexpr int kEvery_s = 30;
     const std::lock_guard lock(mutex_);
     const auto passed = std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - since_);
     const auto due = static_cast<int>(passed.count()) / kEvery_s;
-    if (name_.empty() || due <= said_) return;
-    said_ = due;
+    if (name_.empty() || due <= progress_reports_) return;
+    progress_reports_ = due;
     scene::print_format("        %-16s has been running for %d s\n", name_.c_str(), kEvery_s * due);
     std::fflush(stdout);
   }
@@ -135,7 +136,7 @@ class SuiteClock {
   std::mutex mutex_;
   std::string name_;
   Clock::time_point since_ = Clock::now();
-  int said_ = 0;
+  int progress_reports_ = 0;
   std::thread thread_;
 };
 
@@ -166,9 +167,9 @@ class HilFiles {
     record_.end = code == kExitNoDevice ? "no_arm" : "refused";
     record_.exit_code = code;
     if (auto written = write({}, error.message, true); !written) {
-      complain(written.error(), kExitTrouble);
+      report_error(written.error(), kExitTrouble);
     }
-    return complain(error, code);
+    return report_error(error, code);
   }
 
  private:
@@ -212,7 +213,7 @@ int run_hil(HilCommand command) {
   plan.read(command.choice.firmware);
   plan.write("--json", command.json, output::kJson);
   plan.write("--junit", command.junit, output::kXml);
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   hil::HilOptions& options = command.options;
   options.full = command.suite == "full";
   HilFiles files(command, {.arm = command.choice.device,
@@ -220,13 +221,14 @@ int run_hil(HilCommand command) {
                            .simulated = command.choice.device == "sim",
                            .suite = command.suite,
                            .time = now_utc()});
-  if (auto written = files.write({}, "The suite ended before this check did.", false); !written) {
-    return complain(written.error(), kExitTrouble);
+  if (auto written = files.write({}, "The suite ended before this check.", false); !written) {
+    return report_error(written.error(), kExitTrouble);
   }
   if (command.require_device && command.choice.device == "sim") {
-    return files.end_early(driver::Error{"--require-device needs an arm on the desk, and --device "
-                                         "sim names the simulated one. Remove one of them."},
-                           kExitNoDevice);
+    return files.end_early(
+        driver::Error{"--require-device cannot be used with --device sim. Remove "
+                      "one of them."},
+        kExitNoDevice);
   }
   const auto chosen = resolve(command.choice, false);
   if (!chosen) return files.end_early(chosen.error(), exit_code_of(command.choice));
@@ -237,20 +239,22 @@ int run_hil(HilCommand command) {
   files.record().arm_file = chosen->file.name;
   files.record().simulated = !chosen->real_arm;
   const SimulatedNote simulated(*chosen, "result of a real arm");
-  for (const std::string& sentence : chosen->told) scene::print_format("%s\n", sentence.c_str());
+  for (const std::string& sentence : chosen->messages)
+    scene::print_format("%s\n", sentence.c_str());
   const std::atomic<bool>& interrupted = scene::catch_interrupts();
-  if (chosen->real_arm) scene::leave_rather_than_stop();
-  const scene::LeavingGuard guard;
+  if (chosen->real_arm) scene::treat_sigtstp_as_exit();
+  const scene::ForceExitGuard guard;
   SuiteClock clock(interrupted, command.timeout);
   const std::atomic<bool>& stop = clock.stop();
   if (chosen->real_arm) {
     const scene::RealArmFile file{
-        .path = chosen->path, .file = chosen->file, .why = {}, .told = {}};
+        .path = chosen->path, .file = chosen->file, .why = {}, .warnings = {}};
     options.checked = scene::has_passed(
         scene::describe_checked(*chosen->real_arm, file, command.choice.firmware));
     scene::print_format(
-        "The arm will move by itself, with at most %g N. Put its tip into the middle of the "
-        "workspace, with nothing within 5 cm of it. Keep its switch at hand; Ctrl-C ends it.\n",
+        "The arm will move by itself, with at most %g N. Put the tip into the middle of the "
+        "workspace, with nothing within 5 cm of it. Keep the power switch within reach; Ctrl-C "
+        "stops the arm.\n",
         hil::kHilForceMax);
   }
   const hil::HilRig rig{
@@ -265,14 +269,14 @@ int run_hil(HilCommand command) {
       .stop = stop,
       .prompt = prompt_of(chosen->real_arm.has_value(), stop),
       .question = chosen->real_arm ? bringup::Question([&stop](const std::string& what) {
-        return says_yes(what, stop);
+        return ask_yes_no(what, stop);
       })
                                    : bringup::Question(),
       .attended = options.attended || !chosen->real_arm};
   if (auto bench = rig.open(hil::TipHold::kFree); !bench) {
     return files.end_early(bench.error(), kExitNoDevice);
   }
-  // The cable of a simulated arm cannot be pulled.
+  // The cable of a simulated arm cannot be unplugged.
   if (!chosen->real_arm) options.replug = false;
   driver::Result<void> written;
   hil::HilListener listener;
@@ -283,7 +287,7 @@ int run_hil(HilCommand command) {
   };
   listener.ended = [&](const std::vector<hil::HilResult>& results) {
     print(results.back());
-    if (auto done = files.write(results, "The suite ended before this check did.", false); !done) {
+    if (auto done = files.write(results, "The suite ended before this check.", false); !done) {
       written = done;
     }
   };
@@ -303,10 +307,10 @@ int run_hil(HilCommand command) {
   }
   print_summary(results);
   if (clock.timed_out()) {
-    scene::print_format("Its time was over after %g s (--timeout).\n", command.timeout);
+    scene::print_format("--timeout: the suite was stopped after %g s.\n", command.timeout);
   }
-  if (!written) return complain(written.error(), kExitTrouble);
-  scene::logger().info("The suite {} of {} ended with {}.", command.suite, chosen->name,
+  if (!written) return report_error(written.error(), kExitTrouble);
+  scene::logger().info("The suite {} of {} ended with exit code {}.", command.suite, chosen->name,
                        static_cast<int>(code));
   return code;
 }
@@ -314,47 +318,61 @@ int run_hil(HilCommand command) {
 }  // namespace
 
 void add_hil_command(CLI::App& app, int& exit_code) {
-  CLI::App* sub = app.add_subcommand(
-      "hil",
-      "Check an arm and end with an exit code: reports, delay, watchdog, friction, walls, soak");
+  CLI::App* sub =
+      app.add_subcommand("hil", "Run the hardware checks of an arm, for a person or a test server");
   auto command = std::make_shared<HilCommand>();
-  command->choice.simulates_unasked = false;
+  command->choice.falls_back_to_simulation = false;
   command->choice.add_options(*sub);
   command->choice.add_real_time_option(*sub);
-  sub->add_option("--suite", command->suite, "quick: two to three minutes; full: over an hour")
+  sub->add_flag("--require-device", command->require_device, "Exit with 3 unless the arm is real")
+      ->group("Arm");
+  constexpr const char* kChecks = "Checks";
+  sub->add_option("--suite", command->suite, "quick: 2 to 3 minutes; full: over an hour")
       ->check(CLI::IsMember({"quick", "full"}))
-      ->capture_default_str();
-  sub->add_flag("--attended", command->options.attended,
-                "Somebody is at the arm: also run the feel check, and the checks that need a hand");
-  sub->add_flag("--replug", command->options.replug,
-                "Also ask for the cable to be pulled (with --attended)");
-  sub->add_option("--spring", command->options.spring,
-                  "Stiffness of a spring that you tie to the tip when asked, N/m")
-      ->check(CLI::Range(50.0, 2000.0));
-  sub->add_option("--known-mass", command->options.known_mass,
-                  "Mass that you fix to the tip when asked, kg (with --attended): shows forces in "
-                  "newtons, and a base that stands aslant")
-      ->check(CLI::Range(0.005, 0.06));
-  sub->add_option(
-         "--known-length", command->options.known_length,
-         "Length that you move the tip by along each axis when asked, from mark to mark, m "
-         "(with --attended): shows wrong counts, ratios and links")
-      ->check(CLI::Range(0.02, 0.2));
+      ->capture_default_str()
+      ->group(kChecks);
+  sub->add_option("--check", command->options.only, "Run only this check (repeatable)")
+      ->check(CLI::IsMember(hil::hil_checks()))
+      ->group(kChecks);
   sub->add_option("--soak", command->options.soak_minutes,
-                  "Length of the soak, minutes; left out: half a minute, or 60 in the full suite")
-      ->check(CLI::Range(0.1, 1440.0));
-  sub->add_option("--check", command->options.only,
-                  "Only run this check; may be given several times. One that pushes brings the "
-                  "feel check with it")
-      ->check(CLI::IsMember(hil::hil_checks()));
-  sub->add_flag("--require-device", command->require_device,
-                "Exit with 3 unless a real arm is there, whatever --device says");
-  sub->add_option("--timeout", command->timeout,
-                  "End with zero force after N seconds; the checks left over did not run (exit "
-                  "code 5)")
-      ->check(CLI::Range(1.0, 1e6));
-  sub->add_option("--json", command->json, "Write the results to this file as JSON");
-  sub->add_option("--junit", command->junit, "Write the results to this file as JUnit XML");
+                  "Duration of the soak, minutes (default 0.5; full: 60)")
+      ->check(CLI::Range(0.1, 1440.0))
+      ->group(kChecks);
+  sub->add_option("--timeout", command->timeout, "Stop with zero force after N seconds")
+      ->check(CLI::Range(1.0, 1e6))
+      ->group(kChecks);
+  constexpr const char* kPerson = "With a person at the arm";
+  sub->add_flag("--attended", command->options.attended,
+                "Also run the feel check, and checks that need a hand")
+      ->group(kPerson);
+  sub->add_flag("--replug", command->options.replug, "Also ask to unplug the cable (--attended)")
+      ->group(kPerson);
+  sub->add_option("--spring", command->options.spring, "Stiffness of a spring on the tip, N/m (with --attended)")
+      ->check(CLI::Range(50.0, 2000.0))
+      ->group(kPerson);
+  sub->add_option("--known-mass", command->options.known_mass,
+                  "Mass fixed to the tip on request, kg")
+      ->check(CLI::Range(0.005, 0.06))
+      ->group(kPerson);
+  sub->add_option("--known-length", command->options.known_length,
+                  "Distance to move the tip along each axis, m")
+      ->check(CLI::Range(0.02, 0.2))
+      ->group(kPerson);
+  constexpr const char* kOutput = "Output";
+  sub->add_option("--json", command->json, "Write the results as JSON")
+      ->option_text("FILE")
+      ->group(kOutput);
+  sub->add_option("--junit", command->junit, "Write the results as JUnit XML")
+      ->option_text("FILE")
+      ->group(kOutput);
+  add_example(*sub, "thimble hil --suite quick --junit results.xml",
+              "--check         A check that applies forces also runs the feel check.\n"
+              "--timeout       Remaining checks count as not run (exit code 5).\n"
+              "--spring        You tie the spring to the tip when asked.\n"
+              "--known-mass    With --attended: checks the force in newtons, and whether the\n"
+              "                base is level.\n"
+              "--known-length  With --attended: checks counts, ratios and links. You move the\n"
+              "                tip from mark to mark when asked.");
   sub->callback([command, &exit_code] { exit_code = run_hil(*command); });
 }
 

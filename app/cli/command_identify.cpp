@@ -16,9 +16,10 @@
 #include "bringup/identify/simulated_bench.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/prompts/key_stop.h"
 #include "cli/prompts/yes_question.h"
+#include "cli/report_error.h"
+#include "cli/usage/help_text.h"
 #include "enter_key.h"
 #include "identified/identify_page.h"
 #include "log/logger.h"
@@ -48,7 +49,7 @@ struct IdentifyCommand {
 // Duration of a motion divided by that of one place: seven places take about as long as one motion,
 // and together with both motions of 60 s three minutes. And the minimum at one place, s [chosen: it
 // gives the mass of light arms to 0.2 %].
-constexpr double kPlaceShare = 12, kPlaceSecondsLeast = 2;
+constexpr double kPlaceShare = 12, kPlaceSecondsMin = 2;
 
 std::string today() {
   const std::time_t now = std::time(nullptr);
@@ -61,15 +62,14 @@ std::string today() {
 
 /// Returns how the user stops the motion.
 const char* how_to_stop(bool terminal) {
-  return terminal ? "any key ends it" : "Ctrl-C ends it";
+  return terminal ? "press any key to stop" : "press Ctrl-C to stop";
 }
 
 /// Returns the sentence that announces the motion of the tip.
-std::string led_text(const bringup::IdentifyOptions& options) {
+std::string poses_text(const bringup::IdentifyOptions& options) {
   if (options.places == 0) return "";
-  return fmt::format(
-      ", and then go slowly to {} places of its workspace and shake there for {:g} s each",
-      options.places, options.place_seconds);
+  return fmt::format(", then move slowly to {} poses of its workspace and shake for {:g} s at each",
+                     options.places, options.place_seconds);
 }
 
 /// Opens a real arm and asks for what the motion needs. The arm is idle meanwhile.
@@ -78,28 +78,28 @@ driver::Result<std::unique_ptr<bringup::BenchArm>> open_real(const ChosenArm& ch
                                                              bool loaded,
                                                              const std::atomic<bool>& stop) {
   auto bench = bringup::BenchArm::open(chosen.file, chosen.real_arm, command.choice.firmware, {},
-                                       command.options.force_most);
+                                       command.options.max_force);
   if (!bench) return bench;
   if (loaded) {
     scene::print_format(
-        "Fix %g kg to the tip so that it cannot swing, in the middle of the workspace, and hold it "
-        "from below; let go once you feel that it is carried. Press Enter to begin.\n",
+        "Fix %g kg rigidly to the tip, in the middle of the workspace, and support it from below. "
+        "Let go when you feel that the arm carries it. Press Enter to begin.\n",
         command.options.known_mass);
   } else {
     scene::print_format(
-        "Put the tip into the middle of the workspace, so that it stays there, and take your hand "
-        "off. It will shake by some millimetres with at most %g N for %g s%s; %s. Press Enter to "
-        "begin.\n",
-        command.options.force_most, command.options.seconds, led_text(command.options).c_str(),
+        "Put the tip into the middle of the workspace so that it stays there, and remove your "
+        "hand. The tip will shake by a few millimetres with at most %g N for %g s%s; %s. Press "
+        "Enter to begin.\n",
+        command.options.max_force, command.options.seconds, poses_text(command.options).c_str(),
         how_to_stop(has_terminal()));
   }
   std::fflush(stdout);
   session::EnterKey key = session::EnterKey::kNothing;
   const auto done = [&key] {
-    return (key = session::look_for_enter()) != session::EnterKey::kNothing;
+    return (key = session::check_enter_key()) != session::EnterKey::kNothing;
   };
   if (!(*bench)->hold(done, stop) || key != session::EnterKey::kPressed) {
-    return driver::Error{"It was left before it began; nothing was kept."};
+    return driver::Error{"Cancelled before the motion began; nothing was saved."};
   }
   return bench;
 }
@@ -107,7 +107,8 @@ driver::Result<std::unique_ptr<bringup::BenchArm>> open_real(const ChosenArm& ch
 /// Returns whether the feel check of a real arm is valid, and reports if not. Larger forces than
 /// those of that check need known signs and watchdog.
 bool checked(const ChosenArm& chosen, const std::string& firmware) {
-  const scene::RealArmFile file{.path = chosen.path, .file = chosen.file, .why = {}, .told = {}};
+  const scene::RealArmFile file{
+      .path = chosen.path, .file = chosen.file, .why = {}, .warnings = {}};
   return scene::has_passed(scene::describe_checked(*chosen.real_arm, file, firmware));
 }
 
@@ -141,44 +142,46 @@ int keep(const IdentifyCommand& command, const ChosenArm& chosen, const bringup:
     return done;
   };
   if (bad && !command.write_bad_fit) return left(".");
-  if (!writes) return left(": name the new file by --output, or answer by --yes.");
+  if (!writes) return left(". Name the new file with --output, or confirm with --yes.");
   if (!command.yes && has_terminal()) {
-    const std::string question = (bad ? "The fit is bad. Write it all the same, marked BAD FIT, to "
+    const std::string question = (bad ? "The fit is bad. Write it anyway, marked BAD FIT, to "
                                       : "Write these constants to the new arm file ") +
                                  command.output + "?";
-    if (!says_yes(question, stop)) return stop.load() ? kExitInterrupted : left(".");
+    if (!ask_yes_no(question, stop)) return stop.load() ? kExitInterrupted : left(".");
   }
   const auto file = scene::find_arm_file(chosen.path.string());
-  if (!file) return complain(file.error(), kExitBadInput);
+  if (!file) return report_error(file.error(), kExitBadInput);
   const auto written = bringup::write_identified(*file, command.output, found,
                                                  {.date = today(), .arm = chosen.name});
-  if (!written) return complain(written.error(), kExitTrouble);
+  if (!written) return report_error(written.error(), kExitTrouble);
   scene::print_format("Written to %s%s.\n", command.output.c_str(),
-                      bad ? ", each mark with BAD FIT" : "");
+                      bad ? ", with each value marked BAD FIT" : "");
   return done;
 }
 
 int identify_arm(IdentifyCommand command) {
   const auto chosen = resolve(command.choice, false);
-  if (!chosen) return complain(chosen.error(), exit_code_of(command.choice));
+  if (!chosen) return report_error(chosen.error(), exit_code_of(command.choice));
   const SimulatedNote simulated(*chosen, "constant of an arm on the desk");
-  for (const std::string& sentence : chosen->told) scene::print_format("%s\n", sentence.c_str());
+  for (const std::string& sentence : chosen->messages)
+    scene::print_format("%s\n", sentence.c_str());
   if (auto allowed = check_priority(command.choice, *chosen); !allowed) {
-    return complain(allowed.error(), kExitBadInput);
+    return report_error(allowed.error(), kExitBadInput);
   }
   if (chosen->real_arm && !checked(*chosen, command.choice.firmware)) {
-    return complain({"Identifying pushes the arm by itself, and this arm, with this arm file, has "
-                     "not passed its feel check. Run `thimble feel-check` first."},
-                    kExitBadInput);
+    return report_error(
+        {"identify moves the arm by itself, and this arm has not passed the feel check "
+         "with this arm file. Run `thimble feel-check` first."},
+        kExitBadInput);
   }
   if (auto right = bringup::check_forces(chosen->file, command.options); !right) {
-    return complain(right.error(), kExitBadInput);
+    return report_error(right.error(), kExitBadInput);
   }
   // --output, --yes or an answer at the terminal requests the file.
   const bool writes = !command.output.empty() || command.yes || has_terminal();
   if (command.output.empty()) command.output = chosen->file.name + "_identified.yaml";
   if (auto free = bringup::check_new_file(command.output); writes && !free) {
-    return complain(free.error(), kExitBadInput);
+    return report_error(free.error(), kExitBadInput);
   }
   output::OutputPlan plan;
   plan.read(chosen->path);
@@ -186,26 +189,25 @@ int identify_arm(IdentifyCommand command) {
   if (writes) plan.write("--output", command.output, output::kArmFile);
   plan.write("--record", command.record, session::kRecordingOutput, command.force);
   plan.write_folder("--report", command.report, {"figures.json", "index.html"});
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const std::atomic<bool>& stop = scene::catch_interrupts();
-  if (chosen->real_arm) scene::leave_rather_than_stop();
-  const scene::LeavingGuard guard;
+  if (chosen->real_arm) scene::treat_sigtstp_as_exit();
+  const scene::ForceExitGuard guard;
   // Gives a person time to let go of the mass.
   if (chosen->real_arm) command.options.lead = 4;
   command.options.link = true;
-  command.options.place_seconds =
-      std::max(kPlaceSecondsLeast, command.options.seconds / kPlaceShare);
+  command.options.place_seconds = std::max(kPlaceSecondsMin, command.options.seconds / kPlaceShare);
   std::optional<KeyStop> keys;
   const bringup::OpenBench open = [&](bool loaded) {
     keys.reset();  // Enter begins the motion, so it must not stop it
     auto bench = chosen->real_arm ? open_real(*chosen, command, loaded, stop)
                                   : bringup::simulated_bench(
                                         chosen->file, loaded ? command.options.known_mass : 0,
-                                        false, command.options.force_most);
+                                        false, command.options.max_force);
     if (!bench) return bench;
     keys.emplace();
     scene::print_format("The tip %s; %s.\n",
-                        loaded ? "with the known mass is shaken" : "is shaken by small forces",
+                        loaded ? "shakes with the known mass" : "shakes by small forces",
                         how_to_stop(keys->listens()));
     std::fflush(stdout);
     return bench;
@@ -220,16 +222,16 @@ int identify_arm(IdentifyCommand command) {
   const bool by_key = keys && keys->pressed();
   keys.reset();
   if (stop.load()) {
-    scene::print_format("%s; nothing was kept.\n", by_key ? "Stopped by a key" : "Stopped");
+    scene::print_format("%s; nothing was saved.\n", by_key ? "Stopped by a key" : "Stopped");
     return kExitInterrupted;
   }
   if (!ticks.empty()) {
     if (auto written = write_motion(*chosen, command.record, ticks, command.force); !written) {
-      return complain(written.error(), kExitTrouble);
+      return report_error(written.error(), kExitTrouble);
     }
     scene::print_format("The motion was recorded in %s.\n", command.record.c_str());
   }
-  if (!found) return complain(found.error(), kExitFault);
+  if (!found) return report_error(found.error(), kExitFault);
   scene::print_format("%s", bringup::constants_table(*found, chosen->file).c_str());
   if (!command.report.empty()) {
     const auto written =
@@ -240,15 +242,15 @@ int identify_arm(IdentifyCommand command) {
                                          .date = today(),
                                          .program = scene::program_name(),
                                          .seconds = command.options.seconds,
-                                         .force_most = command.options.force_most,
+                                         .max_force = command.options.max_force,
                                          .bad_fit_is_written = command.write_bad_fit,
                                          .known_mass = command.options.known_mass},
                                         command.report);
-    if (!written) return complain(written.error(), kExitTrouble);
+    if (!written) return report_error(written.error(), kExitTrouble);
     scene::print_format("Report in %s/index.html.\n", command.report.c_str());
   }
   scene::logger().info("The arm {} was identified{}.", chosen->name,
-                       found->against.empty() ? "" : ", and its fit is bad");
+                       found->against.empty() ? "" : ", with a bad fit");
   return keep(command, *chosen, *found, writes, stop);
 }
 
@@ -256,43 +258,55 @@ int identify_arm(IdentifyCommand command) {
 
 void add_identify_command(CLI::App& app, int& exit_code) {
   CLI::App* sub = app.add_subcommand(
-      "identify",
-      "Measure an arm's mass, links, friction, gains, delay and cables by small forces");
+      "identify", "Measure the mass, friction, gains, delay and cables of an arm");
   auto command = std::make_shared<IdentifyCommand>();
   command->options.places = 7;
   command->choice.add_options(*sub);
   command->choice.add_real_time_option(*sub);
-  sub->add_option(
-         "--known-mass", command->options.known_mass,
-         "Mass that you fix to the tip for a second motion, kg: without it only the ratios "
-         "of masses and forces can be seen")
-      ->check(CLI::Range(0.0, 0.06));
-  sub->add_option("--seconds", command->options.seconds, "Of each motion")
+  constexpr const char* kMotion = "Motion";
+  sub->add_option("--known-mass", command->options.known_mass,
+                  "Mass that you fix to the tip for a second motion, kg")
+      ->check(CLI::Range(0.0, 0.06))
+      ->group(kMotion);
+  sub->add_option("--seconds", command->options.seconds, "Duration of each motion, s")
       ->check(CLI::Range(10.0, 600.0))
-      ->capture_default_str();
-  sub->add_option("--places", command->options.places,
-                  "Places of the workspace that the tip is led to afterwards, where the inertia of "
-                  "the links shows; 0: none")
+      ->capture_default_str()
+      ->group(kMotion);
+  sub->add_option("--places", command->options.places, "Poses for the link inertia; 0: none")
       ->check(CLI::Range(3, 9) | CLI::IsMember({0}))
-      ->capture_default_str();
-  sub->add_option("--force-most", command->options.force_most,
-                  "Largest force, N; no more than gate.force_max of the arm file")
+      ->capture_default_str()
+      ->group(kMotion);
+  sub->add_option("--force-most", command->options.max_force, "Largest force, N")
       ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  sub->add_option("--output", command->output,
-                  "New arm file to write; left out: NAME_identified.yaml in this folder");
-  sub->add_flag("--yes", command->yes,
-                "Write the new file without asking; without it you are asked at a terminal, and "
-                "elsewhere --output is your word");
+      ->capture_default_str()
+      ->group(kMotion);
+  constexpr const char* kOutput = "Output";
+  sub->add_option("--output", command->output, "New arm file (default: NAME_identified.yaml here)")
+      ->option_text("FILE")
+      ->group(kOutput);
+  sub->add_flag("--yes", command->yes, "Write the arm file without asking")->group(kOutput);
   sub->add_flag("--write-bad-fit", command->write_bad_fit,
-                "Write the file of a bad fit too, with BAD FIT in each mark");
+                "Also write a bad fit, with each value marked BAD FIT")
+      ->group(kOutput);
   CLI::Option* record =
-      sub->add_option("--record", command->record,
-                      "Recording of the motion with the bare tip to write, for `thimble twin`");
+      sub->add_option("--record", command->record, "Record the motion of the bare tip (HDF5)")
+          ->option_text("FILE")
+          ->group(kOutput);
   sub->add_flag("--force", command->force, "Let --record replace an existing recording")
-      ->needs(record);
-  sub->add_option("--report", command->report,
-                  "Folder for a page with plots, constants and what was not identified, and why");
+      ->needs(record)
+      ->group(kOutput);
+  sub->add_option("--report", command->report, "Write a page with plots, constants and gaps")
+      ->option_text("DIR")
+      ->group(kOutput);
+  add_example(*sub, "thimble identify --device auto --output my_arm.yaml",
+              "The arm moves by itself, by small forces.\n"
+              "--known-mass  Without it, only ratios of masses and forces are identified.\n"
+              "--places      Number of poses in the workspace that the tip visits afterwards.\n"
+              "--force-most  At most gate.force_max of the arm file.\n"
+              "--yes         Without it you are asked at a terminal. Without a terminal, the\n"
+              "              file is written only if --output is given.\n"
+              "--record      Use the recording with `thimble twin`.\n"
+              "--report      The page also lists what was not identified, and why.");
   sub->callback([command, &exit_code] { exit_code = identify_arm(*command); });
 }
 

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
+#include "cli/usage/help_text.h"
 #include "disk_paging/page_file.h"
 #include "log/printed_text.h"
 #include "mesh/contact_mesh.h"
@@ -68,15 +69,15 @@ void print_touching(const render::TriangleMesh& mesh, Json& json) {
 }
 
 // Prints whether a mesh can be touched, and if not, why.
-int tell_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& found, Json& json) {
+int print_verdict(const render::TriangleMesh& mesh, const render::MeshFindings& found, Json& json) {
   json["touchable"] = true;
   json["turned_on_load"] = 0;
   if (found.touchable()) {
-    scene::print_format("The mesh is closed and wound alike: it can be touched.\n");
+    scene::print_format("Mesh OK: watertight and consistently oriented.\n");
     return kExitDone;
   }
   const auto contact = render::ContactMesh::build(mesh);
-  scene::print_format(contact ? "The mesh can be touched; in a scene it is put right:\n"
+  scene::print_format(contact ? "The mesh can be touched. A scene corrects it on loading:\n"
                               : "The mesh cannot be touched:\n");
   for (const render::MeshFault& fault : found.faults) {
     scene::print_format("  - %s\n", render::describe(fault).c_str());
@@ -113,19 +114,19 @@ std::string thicken(render::TriangleMesh& mesh, double thickness, Json& json) {
 }
 
 // Tries the repairs on a mesh that cannot be touched, and prints which one helps.
-void tell_remedy(const render::TriangleMesh& mesh, const render::MeshFindings& found, Json& json) {
+void print_remedy(const render::TriangleMesh& mesh, const render::MeshFindings& found, Json& json) {
   render::RepairedMesh repaired = render::repair_mesh(mesh);
   json["remedy"] = {{"options", nullptr}};
   Json& remedy = json["remedy"];
   if (repaired.mesh.triangles.empty()) {
-    scene::print_format("No triangle of it has an area: there is nothing to touch.\n");
+    scene::print_format("All triangles have zero area, so there is no surface to touch.\n");
     return;
   }
   remedy["changes"] = report::changes_json(repaired.changes);
   if (render::ContactMesh::build(repaired.mesh)) {
     remedy["options"] = {"--repair"};
     scene::print_format(
-        "A repair makes it touchable: --repair OUT.off here, or repair: true in a scene.\n");
+        "It can be repaired: use --repair OUT.off, or `repair: true` in a scene.\n");
     print(repaired.changes);
     return;
   }
@@ -133,15 +134,14 @@ void tell_remedy(const render::TriangleMesh& mesh, const render::MeshFindings& f
   const std::string sheets = thicken(repaired.mesh, thickness, remedy);
   if (!render::ContactMesh::build(repaired.mesh)) {
     scene::print_format(
-        "Neither a repair nor sheets make it touchable: mend it in a mesh editor.\n");
+        "Neither --repair nor --thicken can correct it. Repair it in a mesh editor.\n");
     return;
   }
   remedy["options"] = {"--repair", "--thicken"};
   remedy["thickness"] = thickness;
   scene::print_format(
-      "What is open can be touched as a sheet: --repair OUT.off --thicken %.1g here, or repair: "
-      "true "
-      "and open: {thickness: 0.001} in a scene.\n",
+      "Its open parts can become sheets: use --repair OUT.off --thicken %.1g, or `repair: true` "
+      "and `open: {thickness: 0.001}` in a scene.\n",
       thickness);
   print(repaired.changes);
   scene::print_format("  - %s\n", sheets.c_str());
@@ -156,29 +156,29 @@ int repair(const render::TriangleMesh& mesh, const MeshOptions& options, Json& j
   }
   const std::string text = render::off_text(repaired.mesh);
   if (auto saved = output::write_file(options.repair, output::kMesh, text); !saved) {
-    return complain(saved.error(), kExitTrouble);
+    return report_error(saved.error(), kExitTrouble);
   }
   scene::print_format("Repaired: %s\n", options.repair.c_str());
-  if (repaired.changes.empty() && sheets.empty()) scene::print_format("  Nothing was changed.\n");
+  if (repaired.changes.empty() && sheets.empty()) scene::print_format("  no changes\n");
   print(repaired.changes);
   if (!sheets.empty()) scene::print_format("  - %s\n", sheets.c_str());
   const render::MeshFindings found = render::check_mesh(repaired.mesh);
   json.update(report::mesh_json(found));
   print(found);
   print_touching(repaired.mesh, json);
-  const int verdict = tell_verdict(repaired.mesh, found, json);
-  if (verdict != kExitDone) tell_remedy(repaired.mesh, found, json);
+  const int verdict = print_verdict(repaired.mesh, found, json);
+  if (verdict != kExitDone) print_remedy(repaired.mesh, found, json);
   return verdict;
 }
 
 // Describes a page file; its triangles are checked one page at a time, if at all.
-int tell_pages(const MeshOptions& options, Json& json) {
+int describe_pages(const MeshOptions& options, Json& json) {
   const auto pages = render::PageFile::open(options.file);
-  if (!pages) return complain(pages.error(), kExitBadInput);
+  if (!pages) return report_error(pages.error(), kExitBadInput);
   if (!options.picture.empty() || !options.repair.empty()) {
-    return complain(
-        {options.file + ": a mesh in pages is neither drawn nor repaired; take the mesh "
-                        "that it was cut from."},
+    return report_error(
+        {options.file + ": --picture and --repair cannot be used with a page file. Use the mesh "
+                        "from which it was made."},
         kExitBadInput);
   }
   const double step = pages->lattice().step;
@@ -191,7 +191,7 @@ int tell_pages(const MeshOptions& options, Json& json) {
   high = pages->lattice().origin + step * high;
   const Eigen::Vector3d size = high - low;
   scene::print_format(
-      "%s (a mesh in pages, lengths in m)\n  triangles   %d\n  pages       %zu of up to %d\n",
+      "%s (page file, lengths in m)\n  triangles   %d\n  pages       %zu of up to %d\n",
       options.file.c_str(), pages->triangle_count(), pages->boxes().size(), render::kPageTriangles);
   scene::print_format(
       "  box         (%.4g, %.4g, %.4g) to (%.4g, %.4g, %.4g), %.4g x %.4g x %.4g\n", low.x(),
@@ -207,32 +207,31 @@ int tell_pages(const MeshOptions& options, Json& json) {
   json["touchable"] = damaged == 0;
   if (damaged > 0) {
     scene::print_format(
-        "%zu pages are damaged: they would be holes that nothing is felt of. Write the file "
-        "again.\n",
+        "%zu pages are damaged and would be holes in the surface. Write the file again.\n",
         damaged);
     return kExitBadInput;
   }
-  scene::print_format("All pages are whole: it can be touched, with few of them in memory.\n");
+  scene::print_format("Page file OK: all pages are intact.\n");
   return kExitDone;
 }
 
-int tell_mesh(const MeshOptions& options, Json& json) {
+int describe_mesh_file(const MeshOptions& options, Json& json) {
   if (!options.repair.empty() && std::filesystem::path(options.repair).extension() != ".off") {
-    return complain(
-        {"--repair: " + options.repair + ": a mesh is written as OFF; let the name end in .off."},
-        kExitBadInput);
+    return report_error({"--repair: " + options.repair +
+                         ": meshes are written as OFF. Use a file name that ends in .off."},
+                        kExitBadInput);
   }
   output::OutputPlan plan;
   plan.read(options.file);
   plan.write("--picture", options.picture, output::kind_of_name(options.picture));
   plan.write("--repair", options.repair, output::kMesh);
   plan.write("--json", options.json, output::kJson);
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   json["file"] = options.file;
-  if (render::is_page_file(options.file)) return tell_pages(options, json);
+  if (render::is_page_file(options.file)) return describe_pages(options, json);
   render::MeshFileInfo info;
   const auto mesh = render::load_mesh(options.file, &info);
-  if (!mesh) return complain(mesh.error(), kExitBadInput);
+  if (!mesh) return report_error(mesh.error(), kExitBadInput);
   const render::MeshFindings found = render::check_mesh(*mesh);
   scene::print_format("%s (lengths in the file's unit)\n", options.file.c_str());
   json.update(report::mesh_json(found));
@@ -256,28 +255,28 @@ int tell_mesh(const MeshOptions& options, Json& json) {
     if (const auto drawn =
             report::draw_mesh(*mesh, options.picture, title, "unit of the file", &found);
         !drawn) {
-      return complain(drawn.error(), kExitTrouble);
+      return report_error(drawn.error(), kExitTrouble);
     }
     scene::print_format("Picture: %s\n", options.picture.c_str());
   }
-  const int verdict = tell_verdict(*mesh, found, json);
+  const int verdict = print_verdict(*mesh, found, json);
   if (!options.repair.empty()) {
     json["repaired"] = {{"file", options.repair}};
     return repair(*mesh, options, json["repaired"]);
   }
-  if (verdict != kExitDone) tell_remedy(*mesh, found, json);
+  if (verdict != kExitDone) print_remedy(*mesh, found, json);
   return verdict;
 }
 
 // Describes the mesh on the terminal and optionally in a file.
 int describe_mesh(const MeshOptions& options) {
   Json json;
-  const int verdict = tell_mesh(options, json);
+  const int verdict = describe_mesh_file(options, json);
   // Without findings (bad arguments, an unreadable file) no file is written.
   if (options.json.empty() || !json.contains("touchable")) return verdict;
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   if (auto saved = output::write_file(options.json, output::kJson, text); !saved) {
-    return complain(saved.error(), kExitTrouble);
+    return report_error(saved.error(), kExitTrouble);
   }
   return verdict;
 }
@@ -285,27 +284,30 @@ int describe_mesh(const MeshOptions& options) {
 }  // namespace
 
 void add_mesh_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("mesh", "Tell what a mesh is and what is wrong with it (exit code 2)");
+  CLI::App* command = app.add_subcommand("mesh", "Check and repair a mesh file");
   auto options = std::make_shared<MeshOptions>();
   command->add_option("FILE", options->file,
-                      std::string("Mesh: ") + render::kMeshEndings + ", or one in pages");
-  command->add_option("--picture", options->picture,
-                      "Draw the mesh from three sides, its faults marked (PNG, SVG)");
-  command->add_option("--repair", options->repair,
-                      "Write the mesh repaired (OFF): welded within 1e-5 of its size, no triangles "
-                      "without area or twice, seams closed, bodies that touch at an edge parted, "
-                      "holes filled where that takes no more than half of a part's area, wound "
-                      "outwards");
-  command->add_option("--json", options->json, "Write the findings to this file as JSON");
+                      std::string("Mesh: ") + render::kMeshEndings + ", or a page file");
+  command
+      ->add_option("--picture", options->picture,
+                   "Draw three views with the faults marked (PNG, SVG)")
+      ->option_text("FILE");
+  command->add_option("--repair", options->repair, "Write the repaired mesh (OFF)")
+      ->option_text("FILE");
+  command->add_option("--json", options->json, "Write the findings as JSON")->option_text("FILE");
   command
       ->add_option("--thicken", options->thicken,
-                   "With --repair: make thin bodies of what is still open, so thick, in the "
-                   "file's unit")
+                   "Thickness of sheets for open parts (unit of the file)")
       ->check(CLI::PositiveNumber)
       ->needs("--repair");
   add_mesh_page_command(*command, exit_code);
   add_mesh_generate_command(*command, exit_code);
+  add_example(*command, "thimble mesh scan.ply --repair scan.off",
+              "The exit code is 2 if the mesh cannot be touched.\n"
+              "--repair welds vertices within 1e-5 of the size of the mesh; removes triangles\n"
+              "that have no area or occur twice; closes seams; separates bodies that share an\n"
+              "edge; fills holes up to half of the area of a part; orients triangles outwards.\n"
+              "--thicken requires --repair.");
   // Otherwise a word that a sub-command rejects would be parsed as FILE without an error.
   command->parse_complete_callback([command, options] {
     if (!command->get_subcommands().empty() && !options->file.empty()) {

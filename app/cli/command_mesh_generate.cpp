@@ -4,7 +4,8 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
+#include "cli/usage/help_text.h"
 #include "disk_paging/page_file.h"
 #include "log/printed_text.h"
 #include "output/output_file.h"
@@ -28,15 +29,15 @@ int generate_mesh(const GenerateOptions& options) {
   const studies::RingGrid grid =
       studies::ring_grid(ring, static_cast<std::int64_t>(options.triangles));
   auto file = output::OutputFile::open(options.out, output::kPageFile);
-  if (!file) return complain(file.error(), kExitBadInput);
+  if (!file) return report_error(file.error(), kExitBadInput);
   if (const auto written = studies::write_ring(ring, grid, file->part()); !written) {
-    return complain(file->named(written.error()), kExitTrouble);
+    return report_error(file->named(written.error()), kExitTrouble);
   }
-  if (const auto done = file->commit(); !done) return complain(done.error(), kExitTrouble);
-  scene::print_format("%s: a bumpy ring of %d triangles in %d pages; %.0f MiB of memory at most.\n",
+  if (const auto done = file->commit(); !done) return report_error(done.error(), kExitTrouble);
+  scene::print_format("%s: bumpy ring, %d triangles in %d pages; peak memory %.0f MiB.\n",
                       options.out.c_str(), grid.triangle_count(),
                       grid.triangle_count() / render::kPageTriangles,
-                      static_cast<double>(studies::resident_memory().most) / (1 << 20));
+                      static_cast<double>(studies::resident_memory().peak) / (1 << 20));
   return kExitDone;
 }
 
@@ -44,17 +45,18 @@ int generate_mesh(const GenerateOptions& options) {
 
 void add_mesh_generate_command(CLI::App& mesh_command, int& exit_code) {
   CLI::App* command = mesh_command.add_subcommand(
-      "generate", "Write a bumpy ring of any number of triangles as a page file, to try paging");
+      "generate", "Write a large test mesh (bumpy ring) as a page file");
   auto options = std::make_shared<GenerateOptions>();
   command->add_option("OUT", options->out, "Page file to write")->required();
   command
       ->add_option("--triangles", options->triangles,
-                   "About how many; a triangle takes 64 bytes on the disk")
+                   "Approximate number of triangles, 64 bytes each")
       ->check(CLI::Range(1024.0, 2.5e8))
       ->capture_default_str();
   command->add_option("--size", options->size, "Width of the ring, m")
       ->check(CLI::Range(1e-3, 2.0))
       ->capture_default_str();
+  add_example(*command, "thimble mesh generate ring.pages --triangles 1e6");
   command->callback([options, &exit_code] { exit_code = generate_mesh(*options); });
 }
 

@@ -4,7 +4,8 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
+#include "cli/usage/help_text.h"
 #include "compact_mesh/packed_surface.h"
 #include "disk_paging/page_file.h"
 #include "log/printed_text.h"
@@ -24,19 +25,19 @@ int page_mesh(const PageOptions& options) {
   output::OutputPlan plan;
   plan.read(options.in);
   plan.write("OUT", options.out, output::kPageFile);
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto mesh = render::load_mesh(options.in);
-  if (!mesh) return complain(mesh.error(), kExitBadInput);
+  if (!mesh) return report_error(mesh.error(), kExitBadInput);
   const auto checked = render::ContactMesh::build(*mesh);
-  if (!checked) return complain({options.in + ": " + checked.error().message}, kExitBadInput);
+  if (!checked) return report_error({options.in + ": " + checked.error().message}, kExitBadInput);
   const auto surface = render::PackedSurface::build(*checked);
-  if (!surface) return complain({options.in + ": " + surface.error().message}, kExitBadInput);
+  if (!surface) return report_error({options.in + ": " + surface.error().message}, kExitBadInput);
   auto file = output::OutputFile::open(options.out, output::kPageFile);
-  if (!file) return complain(file.error(), kExitTrouble);
+  if (!file) return report_error(file.error(), kExitTrouble);
   if (const auto written = render::write_page_file(*surface, file->part()); !written) {
-    return complain(file->named(written.error()), kExitTrouble);
+    return report_error(file->named(written.error()), kExitTrouble);
   }
-  if (const auto done = file->commit(); !done) return complain(done.error(), kExitTrouble);
+  if (const auto done = file->commit(); !done) return report_error(done.error(), kExitTrouble);
   scene::print_format(
       "%s: %d triangles in %d pages.\n", options.out.c_str(), surface->triangle_count(),
       (surface->triangle_count() + render::kPageTriangles - 1) / render::kPageTriangles);
@@ -47,10 +48,11 @@ int page_mesh(const PageOptions& options) {
 
 void add_mesh_page_command(CLI::App& mesh_command, int& exit_code) {
   CLI::App* command = mesh_command.add_subcommand(
-      "page", "Cut a mesh into volumes on disk, of which few are in memory while touching");
+      "page", "Convert a mesh to a page file, which is loaded from disk in parts");
   auto options = std::make_shared<PageOptions>();
   command->add_option("IN", options->in, std::string("Mesh: ") + render::kMeshEndings)->required();
   command->add_option("OUT", options->out, "Page file to write")->required();
+  add_example(*command, "thimble mesh page scan.ply scan.pages");
   command->callback([options, &exit_code] { exit_code = page_mesh(*options); });
 }
 

@@ -15,9 +15,10 @@
 
 #include "arms/falcon/falcon_boot.h"
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/file_options.h"
-#include "cli/plug_orders.h"
+#include "cli/plug_commands.h"
+#include "cli/report_error.h"
+#include "cli/usage/help_text.h"
 #include "cli/usage/usage_error.h"
 #include "gravity_terms.h"
 #include "log/logger.h"
@@ -66,7 +67,7 @@ class KernelAttachment {
     thread_ = std::thread([this] {
       const auto attached = usb::attach_to_kernel(port_, bus_id_);
       if (attached) {
-        scene::print_format("Attached to this kernel, port %d of its virtual USB host.\n",
+        scene::print_format("Attached to this kernel: port %d of the virtual USB host.\n",
                             *attached);
       } else {
         scene::logger().error("{}", attached.error().message);
@@ -138,17 +139,17 @@ usb::HandMotion motion_of(const std::string& name) {
   return name == "tap" ? usb::HandMotion::kTap : usb::HandMotion::kStroke;
 }
 
-void say_what_to_do(const usb::UsbipServer& server, const PlugOptions& options) {
-  scene::print_format("The simulated arm '%s' waits on port %u as USB device %s.\n",
+void print_instructions(const usb::UsbipServer& server, const PlugOptions& options) {
+  scene::print_format("The simulated arm '%s' is available on port %u as USB device %s.\n",
                       options.arm.c_str(), static_cast<unsigned>(server.port()),
                       server.bus_id().c_str());
   if (!options.attach) {
     scene::print_format(
-        "Plug it in, as root: modprobe vhci-hcd; usbip --tcp-port %u attach -r 127.0.0.1 "
+        "To plug it in, run as root: modprobe vhci-hcd; usbip --tcp-port %u attach -r 127.0.0.1 "
         "-b %s\n",
         static_cast<unsigned>(server.port()), server.bus_id().c_str());
   }
-  scene::print_format("Ctrl-C unplugs it.\n");
+  scene::print_format("Press Ctrl-C to unplug it.\n");
   std::fflush(stdout);
 }
 
@@ -156,7 +157,7 @@ void say_what_to_do(const usb::UsbipServer& server, const PlugOptions& options) 
 driver::Result<scene::ArmFile> simulated_file(const std::string& path) {
   auto file = scene::load_arm(path);
   if (file && !file->can_simulate) {
-    return driver::Error{"The arm file " + path +
+    return driver::Error{"--arm: " + path +
                          " has no section 'simulation', so the arm cannot be simulated."};
   }
   return file;
@@ -170,29 +171,29 @@ int plug(const PlugOptions& options) {
   if (!options.firmware.empty()) {
     auto image = driver::falcon::read_firmware(options.firmware);
     if (!image) {
-      return complain(image.error(), kExitBadInput);
+      return report_error(image.error(), kExitBadInput);
     }
     shelf.firmware = std::move(*image);
   }
   std::optional<Eigen::Vector3d> gravity_B;
   if (!options.arm_file.empty()) {
     const auto file = simulated_file(options.arm_file);
-    if (!file) return complain(file.error(), kExitBadInput);
+    if (!file) return report_error(file.error(), kExitBadInput);
     shelf.arm = usb::ShelfArm{.model = file->model, .settings = file->simulated};
     gravity_B = file->R_WB.transpose() * Eigen::Vector3d(0, 0, -scene::kGravity);
   }
   auto arm = usb::make_usb_arm(options.arm, shelf);
   if (!arm) {
-    return complain(arm.error(), kExitBadInput);
+    return report_error(arm.error(), kExitBadInput);
   }
   usb::FaultyDevice device(**arm, options.seed);
-  Plugged plugged{
+  PluggedArm plugged{
       .device = device, .arm = **arm, .p_BH = (*arm)->truth().p_BT, .gravity_B = gravity_B};
-  if (!options.faults.empty() && !obey_file(plugged, options.faults)) return kExitBadInput;
-  OrderPipe control;
+  if (!options.faults.empty() && !execute_file(plugged, options.faults)) return kExitBadInput;
+  CommandPipe control;
   if (!options.control.empty() && !control.open(options.control)) {
-    return complain(
-        {"cannot make the control pipe " + options.control + "; does it exist already?"},
+    return report_error(
+        {"--control: cannot create the pipe " + options.control + ". Remove an existing file."},
         kExitBadInput);
   }
   std::optional<TruthTrace> trace;
@@ -200,14 +201,14 @@ int plug(const PlugOptions& options) {
     auto output = output::OutputFile::open(options.trace, output::kMotionTrace);
     // The file is published at once, because it is read while the arm is plugged in.
     auto named = output ? output->publish() : driver::Result<void>(output.error());
-    if (!named) return complain(named.error(), kExitBadInput);
+    if (!named) return report_error(named.error(), kExitBadInput);
     trace.emplace(std::move(output).value());
   }
   auto server = usb::UsbipServer::open(device, {.address = options.address, .port = options.port});
   if (!server) {
-    return complain(server.error(), kExitTrouble);
+    return report_error(server.error(), kExitTrouble);
   }
-  say_what_to_do(**server, options);
+  print_instructions(**server, options);
 
   // Set by Ctrl-C, or when the kernel refused the device.
   const std::atomic<bool>& interrupted = scene::catch_interrupts();
@@ -224,8 +225,8 @@ int plug(const PlugOptions& options) {
   });
   const usb::UsbipCounters counters = (*server)->counters();
   scene::print_format(
-      "Unplugged. Transfers: %llu asked, %llu done, %llu stalled, %llu too long, %llu taken "
-      "back. Frames left out: %llu.\n",
+      "Unplugged. Transfers: %llu submitted, %llu completed, %llu stalled, %llu too long, %llu "
+      "cancelled. Skipped frames: %llu.\n",
       static_cast<unsigned long long>(counters.submitted),
       static_cast<unsigned long long>(counters.completed),
       static_cast<unsigned long long>(counters.stalled),
@@ -235,7 +236,7 @@ int plug(const PlugOptions& options) {
   for (std::size_t kind = 0; kind < usb::kFaultKinds; ++kind) {
     const auto fault = static_cast<usb::FaultKind>(kind);
     if (device.hits(fault) == 0) continue;
-    scene::print_format("Fault %s hit %llu packets.\n", std::string(usb::name(fault)).c_str(),
+    scene::print_format("Fault %s affected %llu packets.\n", std::string(usb::name(fault)).c_str(),
                         static_cast<unsigned long long>(device.hits(fault)));
   }
   return attachment.failed() ? kExitTrouble : kExitDone;
@@ -251,53 +252,74 @@ std::string check_arm_name(const std::string& name) {
   return "expected one of " + known + "; found \"" + name + "\"." + suggestion(name, names);
 }
 
+/// Returns the names and descriptions of the arms, one per line.
 std::string arm_list() {
-  std::string list = "Which arm:";
+  std::string list = "Arms:\n";
   for (const usb::ShelfEntry& entry : usb::kShelf) {
-    list += "\n  " + std::string(entry.name) + ": " + std::string(entry.what);
+    list += std::string(entry.name) + ": " + std::string(entry.what) + "\n";
   }
   return list;
 }
 
+constexpr const char* kPlugNotes =
+    "--hand     none, rest: keep the home pose; tap: up and down; stroke: a circle.\n"
+    "--arm      Replaces torque constants, tip, weight, drive train, hand and wiring\n"
+    "           of the built-in arm. A driver does not have to know the file.\n"
+    "--serial   Default: that of the board (all mbed boards: 0123456789).\n"
+    "--faults   One fault per line: KIND [in|out] [after=FRAMES] [for=FRAMES]\n"
+    "           [rate=CHANCE]. KIND: stall, short, long, torn, stale, duplicate,\n"
+    "           silence, bit_errors, unplug, lost.\n"
+    "--control  The pipe takes such lines, `heal`, `hand X Y Z` (m, along the axes\n"
+    "           of the base, from the start of the hand), `hand off`, `hand on` and\n"
+    "           `mass KG`.\n"
+    "--trace    The true state of the arm, one line per USB frame with packets.";
+
 }  // namespace
 
 void add_plug_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
-      "plug", "Export a simulated arm as a USB device that this kernel can plug in (USB/IP)");
+  CLI::App* command = app.add_subcommand("plug", "Export a simulated arm as a USB device (USB/IP)");
   auto options = std::make_shared<PlugOptions>();
-  command->add_option("ARM", options->arm, arm_list())
+  command->add_option("ARM", options->arm, "Name of the arm, see below")
       ->required()
       ->check(CLI::Validator(check_arm_name, ""));
-  command->add_option("--port", options->port, "TCP port; 0 takes any free one")
-      ->capture_default_str();
-  command
-      ->add_option("--listen", options->address,
-                   "Address to listen on; 0.0.0.0 lets other machines plug the arm in")
-      ->capture_default_str();
-  command->add_flag("--attach", options->attach,
-                    "Plug it into this kernel too (root; module vhci-hcd)");
-  command->add_option("--hand", options->motion, "What the simulated hand does")
+  constexpr const char* kConnection = "Connection";
+  command->add_flag("--attach", options->attach, "Attach it to this kernel (root, module vhci-hcd)")
+      ->group(kConnection);
+  command->add_option("--port", options->port, "TCP port; 0: any free port")
+      ->capture_default_str()
+      ->group(kConnection);
+  command->add_option("--listen", options->address, "Address; 0.0.0.0 allows other machines")
+      ->option_text("ADDRESS")
+      ->capture_default_str()
+      ->group(kConnection);
+  constexpr const char* kArm = "Simulated arm";
+  add_arm_option(*command, options->arm_file, "Arm file whose constants are used")->group(kArm);
+  command->add_option("--hand", options->motion, "Motion of the simulated hand")
       ->check(CLI::IsMember({"none", "rest", "tap", "stroke"}))
-      ->capture_default_str();
-  add_arm_option(*command, options->arm_file,
-                 "Arm file of its constants, in place of the shelf's own: torque constants, tip, "
-                 "weight, drive train, hand, wiring; a driver need not know it");
-  command->add_option("--serial", options->serial,
-                      "Serial number; without it that of the board (all mbed boards: 0123456789)");
-  command->add_option("--seed", options->seed, "Seed of everything random")->capture_default_str();
-  command->add_option("--firmware", options->firmware,
-                      "The only firmware that a simulated Falcon runs; without it any will do");
-  command->add_option("--faults", options->faults,
-                      "File of faults, one a line: KIND [in|out] [after=FRAMES] [for=FRAMES] "
-                      "[rate=CHANCE];\nKIND: stall, short, long, torn, stale, duplicate, silence, "
-                      "bit_errors, unplug, lost");
-  command->add_option(
-      "--control", options->control,
-      "Make a named pipe that takes such lines, and 'heal', while it runs; and "
-      "'hand X Y Z' (m\nalong the base's axes from where the hand began), 'hand off', "
-      "'hand on'");
-  command->add_option("--trace", options->trace,
-                      "Write what was true of the arm, a line for each frame with packets");
+      ->capture_default_str()
+      ->group(kArm);
+  command->add_option("--serial", options->serial, "Serial number of the USB device")
+      ->option_text("TEXT")
+      ->group(kArm);
+  command->add_option("--seed", options->seed, "Seed of all random numbers")
+      ->capture_default_str()
+      ->group(kArm);
+  command
+      ->add_option("--firmware", options->firmware,
+                   "Only firmware that a Falcon accepts (default: any)")
+      ->option_text("FILE")
+      ->group(kArm);
+  constexpr const char* kTests = "Tests";
+  command->add_option("--faults", options->faults, "Script of USB faults")
+      ->option_text("FILE")
+      ->group(kTests);
+  command->add_option("--control", options->control, "Create a named pipe for commands")
+      ->option_text("PIPE")
+      ->group(kTests);
+  command->add_option("--trace", options->trace, "Write the true state of the arm")
+      ->option_text("FILE")
+      ->group(kTests);
+  add_example(*command, "thimble plug polhem --attach", arm_list() + "\n" + kPlugNotes);
   command->callback([options, &exit_code] { exit_code = plug(*options); });
 }
 

@@ -8,8 +8,9 @@
 
 #include "bag/read_bag.h"
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/file_options.h"
+#include "cli/report_error.h"
+#include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
 #include "print.h"
@@ -49,20 +50,20 @@ bool is_recording(const std::string& file) {
 void print_comparison(const std::string& file, const session::TrajectoryComparison& compared,
                       const std::string& scene, bool forces) {
   scene::print_format(
-      "%s: %zu ticks of %s along the trajectory, %zu of them touching; force %.4g N (rms)",
-      file.c_str(), compared.ticks, scene.c_str(), compared.touching, compared.force_rms);
+      "%s: %zu ticks of %s along the trajectory, %zu in contact; force %.4g N (RMS)", file.c_str(),
+      compared.ticks, scene.c_str(), compared.touching, compared.force_rms);
   if (!forces) {
     scene::print_format(".\n");
     return;
   }
   scene::print_format(", recorded %.4g N.\n", compared.recorded_rms);
-  scene::print_format("Force error %.4g N (rms)", compared.error_rms);
+  scene::print_format("Force error %.4g N (RMS)", compared.error_rms);
   if (compared.recorded_rms > 0) {
-    scene::print_format(", %.3g %% of the recorded",
+    scene::print_format(", %.3g %% of the recorded force",
                         100 * compared.error_rms / compared.recorded_rms);
   }
   scene::print_format(
-      "; direction within %.3g degrees in 99 of 100 of %zu ticks; contact differs in %zu.\n",
+      "; direction error below %.3g degrees in 99 %% of %zu ticks; contact differs in %zu.\n",
       compared.direction_p99 * 180 / std::numbers::pi, compared.directions,
       compared.contact_disagrees);
 }
@@ -70,26 +71,28 @@ void print_comparison(const std::string& file, const session::TrajectoryComparis
 /// Touches a scene along the probe positions of a trajectory file.
 int replay_probe(const ReplayOptions& options) {
   if (!options.page.empty()) {
-    return complain({"--page plays recordings; of a trajectory write one first, by --record FILE."},
-                    kExitBadInput);
+    return report_error(
+        {"--page requires a recording. Convert the trajectory first with --record FILE."},
+        kExitBadInput);
   }
   if (options.scene.empty()) {
-    return complain({options.files.front() + " is no recording; as a trajectory it needs --scene."},
-                    kExitBadInput);
+    return report_error(
+        {options.files.front() + " is not a recording. A trajectory requires --scene; add it."},
+        kExitBadInput);
   }
   session::TrajectoryForm form = options.form;
   form.metres = options.length == "mm" ? 1e-3 : 1;
   form.seconds = options.time == "ms" ? 1e-3 : 1;
   const auto replay =
       session::replay_trajectory_file(options.files.front(), form, options.frame, options.scene);
-  if (!replay) return complain(replay.error(), kExitBadInput);
+  if (!replay) return report_error(replay.error(), kExitBadInput);
   print_comparison(options.files.front(), replay->compared, replay->felt.info.scene,
                    form.has_forces());
   if (options.record.empty()) return kExitDone;
   if (auto written = session::write_recording(options.record, replay->felt.info, replay->felt.ticks,
                                               options.force);
       !written) {
-    return complain(written.error(), kExitTrouble);
+    return report_error(written.error(), kExitTrouble);
   }
   return kExitDone;
 }
@@ -98,40 +101,40 @@ int replay_probe(const ReplayOptions& options) {
 int replay_a_bag(const ReplayOptions& options) {
   const std::string& file = options.files.front();
   if (options.scene.empty())
-    return complain({file + " is a bag; it needs --scene."}, kExitBadInput);
+    return report_error({file + " is a bag, which requires --scene. Add it."}, kExitBadInput);
   if (!options.page.empty()) {
-    return complain({"--page plays recordings; of a bag write one first, by --record FILE."},
-                    kExitBadInput);
+    return report_error({"--page requires a recording. Convert the bag first with --record FILE."},
+                        kExitBadInput);
   }
   session::BagTopics topics = options.bag;
   topics.axes = options.axes == "omni" ? bag::BagAxes::kOmni : bag::BagAxes::kPlain;
   const auto replayed = session::replay_bag(file, topics, options.scene);
-  if (!replayed) return complain(replayed.error(), kExitBadInput);
+  if (!replayed) return report_error(replayed.error(), kExitBadInput);
   const session::TrajectoryReplay& replay = replayed->replay;
   print_comparison(file, replay.compared, replay.felt.info.scene, replayed->has_forces);
   if (replayed->has_forces)
     scene::print_format("Largest force error %.3g N.\n", replayed->error_max);
   if (!options.csv.empty()) {
     if (auto written = session::write_csv(replay.felt, options.csv); !written) {
-      return complain(written.error(), kExitTrouble);
+      return report_error(written.error(), kExitTrouble);
     }
   }
   if (options.record.empty()) return kExitDone;
   auto written =
       session::write_recording(options.record, replay.felt.info, replay.felt.ticks, options.force);
-  return written ? kExitDone : complain(written.error(), kExitTrouble);
+  return written ? kExitDone : report_error(written.error(), kExitTrouble);
 }
 
 /// Prints how the forces of one hand compare with the recorded ones.
 void print_replay(const std::string& file, const session::Replay& replay) {
   const session::ReplayComparison& compared = replay.compared;
-  session::print(stdout, "{}: {} ticks of {} by the recorded hand; ", file, compared.ticks,
+  session::print(stdout, "{}: {} ticks of {} with the recorded motion; ", file, compared.ticks,
                  replay.felt.info.scene);
   if (compared.differing == 0) {
-    session::print(stdout, "every force is the recorded one to the bit.\n");
+    session::print(stdout, "all forces are bit-identical to the recorded ones.\n");
   } else {
     session::print(
-        stdout, "{} forces differ from the recorded ones, first in tick {}, by {:.3g} N at most.\n",
+        stdout, "{} forces differ from the recorded ones, first in tick {}, by at most {:.3g} N.\n",
         compared.differing, *compared.first, compared.largest);
   }
 }
@@ -141,13 +144,13 @@ void print_replay(const std::string& file, const session::Replay& replay) {
 bool print_reason(const session::Recording& recording, const std::string& scene) {
   const auto repeatable = session::check_repeatable(recording, scene);
   if (!repeatable) {
-    session::print(stdout, "They differ because {}\n", repeatable.error().message);
+    session::print(stdout, "Reason: {}\n", repeatable.error().message);
     return true;
   }
   session::print(
       stdout,
-      "Scene, options, arm and program are those of the recording, so every force should "
-      "be the recorded one. Please report this with the recording.\n");
+      "Scene, options, arm and program are those of the recording, so all forces should be "
+      "identical. Please report this error with the recording.\n");
   return false;
 }
 
@@ -163,20 +166,21 @@ int replay_recordings(const ReplayOptions& options) {
   }
   plan.write("--page", options.page, output::kWebPage);
   plan.write("--csv", options.csv, output::kTable);
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   if (from_bag) return replay_a_bag(options);
   if (!options.csv.empty()) {
-    return complain({"--csv is of a bag; of others say --record FILE, then thimble export."},
-                    kExitBadInput);
+    return report_error(
+        {"--csv requires a bag. For other files use --record FILE, then `thimble export`."},
+        kExitBadInput);
   }
   if (from_text) return replay_probe(options);
   std::vector<session::Recording> recordings;
   for (const std::string& file : options.files) {
     auto recording = session::read_recording(file);
-    if (!recording) return complain(recording.error(), kExitBadInput);
+    if (!recording) return report_error(recording.error(), kExitBadInput);
     if (options.verify) {
       if (auto same = session::check_repeatable(*recording, options.scene); !same) {
-        return complain({"--verify: " + same.error().message}, kExitBadInput);
+        return report_error({"--verify: " + same.error().message}, kExitBadInput);
       }
     }
     recordings.push_back(std::move(recording).value());
@@ -186,11 +190,11 @@ int replay_recordings(const ReplayOptions& options) {
     plan.write("--record", session::file_of_arm(options.record, recording.info.arm_in_scene),
                session::kRecordingOutput, options.force);
   }
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   report::ReplayPage page;
   auto replays =
       session::replay_together(recordings, options.scene, options.page.empty() ? nullptr : &page);
-  if (!replays) return complain(replays.error(), kExitBadInput);
+  if (!replays) return report_error(replays.error(), kExitBadInput);
   bool differs = false, unexplained = false;
   for (std::size_t i = 0; i < replays->size(); ++i) {
     session::Replay& replay = (*replays)[i];
@@ -206,14 +210,15 @@ int replay_recordings(const ReplayOptions& options) {
     if (auto written =
             session::write_recording(file, replay.felt.info, replay.felt.ticks, options.force);
         !written) {
-      return complain(written.error(), kExitTrouble);
+      return report_error(written.error(), kExitTrouble);
     }
   }
   if (!options.page.empty()) {
     if (auto written = page.write(*replays, options.page); !written) {
-      return complain({options.page + " is not written: " + written.error().message}, kExitTrouble);
+      return report_error({options.page + " was not written: " + written.error().message},
+                          kExitTrouble);
     }
-    session::print(stdout, "Page that plays it: {}\n", options.page);
+    session::print(stdout, "Page: {}\n", options.page);
   }
   return unexplained || (options.verify && differs) ? kExitTrouble : kExitDone;
 }
@@ -221,50 +226,62 @@ int replay_recordings(const ReplayOptions& options) {
 }  // namespace
 
 void add_replay_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
-      "replay", "Let a recorded hand touch a scene again, and compare the forces");
+  CLI::App* command =
+      app.add_subcommand("replay", "Repeat a recorded motion in a scene and compare the forces");
   auto options = std::make_shared<ReplayOptions>();
-  command
-      ->add_option("FILE", options->files,
-                   "Recording, made by `thimble run SCENE --record FILE`, of each arm one; or a "
-                   "trajectory as text: where a probe was in each line, and what it felt; or a bag "
-                   "of ROS 2 (SQLite): its folder or .db3 file")
+  command->add_option("FILE", options->files, "Recordings, a trajectory (text), or a ROS 2 bag")
       ->required();
-  command
-      ->add_option(
-          "--columns", options->form.columns,
-          "Columns of a trajectory: t x y z fx fy fz, in its order; - for one to leave out")
-      ->capture_default_str();
-  command->add_option("--length", options->length, "Unit of length of a trajectory in the world")
-      ->check(CLI::IsMember({"m", "mm"}))
-      ->capture_default_str();
-  command->add_option("--time", options->time, "Unit of time of a trajectory")
-      ->check(CLI::IsMember({"s", "ms"}))
-      ->capture_default_str();
-  command->add_option("--frame", options->frame,
-                      "Where a trajectory is told in: world, or the object whose mesh file has its "
-                      "frame and unit");
-  command->add_option(
-      "--topic", options->bag.pose,
-      "Positions of a bag (PoseStamped); if left out the only such topic, or /pose");
-  command->add_option("--wrench-topic", options->bag.wrench,
-                      "Forces of a bag to compare with (WrenchStamped); if left out the only such "
-                      "topic, or /wrench");
-  command->add_option("--axes", options->axes, "Axes of a bag: the world's, or the Omni drivers'")
-      ->check(CLI::IsMember({"plain", "omni"}))
-      ->capture_default_str();
-  command->add_option("--csv", options->csv, "Table to write of what a bag's positions felt");
   add_scene_option(*command, options->scene, "--scene",
-                   "Scene to touch in place of the recorded one: what would this hand have felt?");
-  CLI::Option* record =
-      command->add_option("--record", options->record, "Recording of what is felt now to write");
+                   "Scene to touch instead of the recorded one");
+  command->add_flag("--verify", options->verify, "Fail unless all forces are bit-identical");
+  constexpr const char* kOutput = "Output";
+  CLI::Option* record = command->add_option("--record", options->record, "Record the replay (HDF5)")
+                            ->option_text("FILE")
+                            ->group(kOutput);
   command->add_flag("--force", options->force, "Let --record replace an existing recording")
-      ->needs(record);
-  command->add_option("--page", options->page,
-                      "Page that plays the touch in a browser to write: one HTML file");
-  command->add_flag("--verify", options->verify,
-                    "Fail unless scene and build are those of the recording and every force is the "
-                    "same to the bit");
+      ->needs(record)
+      ->group(kOutput);
+  command->add_option("--page", options->page, "Write an HTML file that plays the replay")
+      ->option_text("FILE")
+      ->group(kOutput);
+  constexpr const char* kTrajectory = "Trajectories";
+  command->add_option("--columns", options->form.columns, "Columns in their order; -: skipped")
+      ->option_text("LIST")
+      ->capture_default_str()
+      ->group(kTrajectory);
+  command->add_option("--length", options->length, "Unit of length in the world frame")
+      ->check(CLI::IsMember({"m", "mm"}))
+      ->capture_default_str()
+      ->group(kTrajectory);
+  command->add_option("--time", options->time, "Unit of time")
+      ->check(CLI::IsMember({"s", "ms"}))
+      ->capture_default_str()
+      ->group(kTrajectory);
+  command->add_option("--frame", options->frame, "Frame of the positions: world, or an object")
+      ->option_text("NAME")
+      ->group(kTrajectory);
+  constexpr const char* kBags = "Bags";
+  command->add_option("--topic", options->bag.pose, "Positions (PoseStamped; default /pose)")
+      ->option_text("NAME")
+      ->group(kBags);
+  command
+      ->add_option("--wrench-topic", options->bag.wrench, "Forces (WrenchStamped; default /wrench)")
+      ->option_text("NAME")
+      ->group(kBags);
+  command->add_option("--axes", options->axes, "Axes of the world, or of the Omni drivers")
+      ->check(CLI::IsMember({"plain", "omni"}))
+      ->capture_default_str()
+      ->group(kBags);
+  command->add_option("--csv", options->csv, "Write a table of the replay")
+      ->option_text("FILE")
+      ->group(kBags);
+  add_example(*command, "thimble replay touch.h5 --verify",
+              "FILE      Recordings are from `thimble run SCENE --record FILE`, one per arm. A\n"
+              "          trajectory has one line per probe position, with the force. A bag\n"
+              "          (SQLite) is a folder or a .db3 file.\n"
+              "--verify  Also fails if scene or program are not those of the recording.\n"
+              "--frame   An object: positions in the frame and unit of its mesh file.\n"
+              "--topic, --wrench-topic  Default: the only topic of that type.");
   command->callback([options, &exit_code] { exit_code = replay_recordings(*options); });
 }
 

@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/end_run.h"
 #include "cli/file_options.h"
 #include "cli/options/run_options.h"
+#include "cli/report_error.h"
 #include "cli/usage/usage_error.h"
 #include "files/scene_inputs.h"
 #include "hold_key.h"
@@ -54,12 +54,12 @@ namespace {
 /// Prints on standard output, unless --quiet is set.
 template <class... Args>
 void report(fmt::format_string<Args...> format, Args&&... args) {
-  if (scene::talk() == scene::Talk::kQuiet) return;
+  if (scene::verbosity() == scene::Verbosity::kQuiet) return;
   session::print(stdout, format, std::forward<Args>(args)...);
 }
 
 /// Prints sentences, one per line.
-void tell(const std::vector<std::string>& sentences) {
+void print_lines(const std::vector<std::string>& sentences) {
   for (const std::string& sentence : sentences) report("{}\n", sentence);
   std::fflush(stdout);  // before the user is asked a question
 }
@@ -67,7 +67,7 @@ void tell(const std::vector<std::string>& sentences) {
 /// Ends the recording and prints its path, and what it lacks if a recording was requested.
 ExitCode end_recording(session::Session& session, const std::string& asked) {
   const auto recorded = session.end_recording();
-  if (!recorded) return complain(recorded.error(), kExitTrouble);
+  if (!recorded) return report_error(recorded.error(), kExitTrouble);
   for (std::size_t arm = 0; *recorded && arm < session.arms(); ++arm) {
     report("Recording: {}\n", session::file_of_arm(asked, session.arm_name(arm)).string());
   }
@@ -90,8 +90,8 @@ driver::Result<void> write_files(const session::Session& session,
     const auto file = std::filesystem::path(options.report) / "index.html";
     const auto written = page->write(grant, file);
     if (!written)
-      scene::logger().warn("{} is not written: {}", file.string(), written.error().message);
-    if (written) report("Page that plays it: {}\n", file.string());
+      scene::logger().warn("{} was not written: {}", file.string(), written.error().message);
+    if (written) report("Page: {}\n", file.string());
   }
   if (!options.save_mesh.empty()) {
     const std::string text = render::off_text(session.mesh_now(object));
@@ -104,7 +104,7 @@ driver::Result<void> write_files(const session::Session& session,
 }
 
 /// Helpers that run alongside a session and are queried afterwards. Destroyed before the session.
-struct RunSides {
+struct RunHelpers {
   std::shared_ptr<ros2::SteppedClock> clock;          // clock of a stepped run, otherwise null
   std::vector<std::unique_ptr<ros2::RosRun>> topics;  // one per arm
   std::unique_ptr<report::RunPage> page;
@@ -112,11 +112,11 @@ struct RunSides {
 
 /// Opens the topics of all arms.
 driver::Result<void> open_topics(session::Session& session, const ros2::RosOptions& options,
-                                 RunSides& sides) {
+                                 RunHelpers& helpers) {
   for (std::size_t arm = 0; arm < session.arms(); ++arm) {
-    auto opened = ros2::RosRun::open(session, options, arm, sides.clock.get());
+    auto opened = ros2::RosRun::open(session, options, arm, helpers.clock.get());
     if (!opened) return opened.error();
-    sides.topics.push_back(std::move(opened).value());
+    helpers.topics.push_back(std::move(opened).value());
   }
   return {};
 }
@@ -125,33 +125,34 @@ driver::Result<void> open_topics(session::Session& session, const ros2::RosOptio
 /// hold a force or a recording is open.
 ExitCode run_session(session::Session& session, session::ServoThread& servo,
                      session::ViewerRequestHandler* desk, const RunOptions& options,
-                     RunSides& sides, std::optional<scene::LeavingGuard>& guard,
+                     RunHelpers& helpers, std::optional<scene::ForceExitGuard>& guard,
                      const std::atomic<bool>& stop) {
   guard.emplace();
   const bool real = session.setup().any_real();
   const auto open = session::open_arm(session, session::user_terminal(), stop);
   if (!open) {
-    const ExitCode code = complain(open.error(), real ? kExitNoDevice : kExitBadInput);
+    const ExitCode code = report_error(open.error(), real ? kExitNoDevice : kExitBadInput);
     return stop.load() ? kExitInterrupted : code;
   }
   if (!*open) return kExitInterrupted;
   if (options.ros.asked) {
-    if (auto opened = open_topics(session, options.ros.options, sides); !opened) {
-      return complain(opened.error(), kExitBadInput);
+    if (auto opened = open_topics(session, options.ros.options, helpers); !opened) {
+      return report_error(opened.error(), kExitBadInput);
     }
   }
-  if (!options.report.empty()) sides.page = std::make_unique<report::RunPage>(session);
+  if (!options.report.empty()) helpers.page = std::make_unique<report::RunPage>(session);
   std::optional<session::HoldKey> key;
   if (session.setup().hold().by_caller) {
     scene::terminal().info(
-        "Hold the space bar, in this terminal or in the viewer window, to have forces.");
+        "Hold the space bar, in this terminal or in the viewer window, to enable forces.");
     key.emplace(session);
   }
   std::optional<session::ReplugWatches> watch;
   if (real) watch.emplace(session, key ? key->terminal() : session::user_terminal());
 
   servo.begin(session, stop);
-  const bool shows_progress = isatty(STDERR_FILENO) != 0 && scene::talk() != scene::Talk::kQuiet;
+  const bool shows_progress =
+      isatty(STDERR_FILENO) != 0 && scene::verbosity() != scene::Verbosity::kQuiet;
   session::RunAttendance attendance(session, watch ? &*watch : nullptr, desk, shows_progress);
   while (!servo.ended()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -173,7 +174,7 @@ std::string numbered(const std::string& file, int number) {
 }
 
 /// State of one command across restarts of its run.
-struct RunCourse {
+struct RunContext {
   RunOptions& options;
   const session::RunArms& arms;
   const std::atomic<bool>& stop;
@@ -186,107 +187,108 @@ struct RunCourse {
 };
 
 /// Returns the object whose mesh is saved; -1 for all.
-driver::Result<int> find_saved(const session::Session& session, const RunOptions& options) {
+driver::Result<int> find_saved_object(const session::Session& session, const RunOptions& options) {
   if (options.save_object.empty()) return -1;
   if (const auto object = session.find_object(options.save_object)) return *object;
   std::vector<std::string> names;
   for (const auto& object : session.scene().objects) names.push_back(object.name);
-  return driver::Error{"--save-object: the scene has no object \"" + options.save_object + "\"." +
-                       suggestion(options.save_object, names)};
+  return driver::Error{"--save-object: there is no object \"" + options.save_object +
+                       "\" in the scene." + suggestion(options.save_object, names)};
 }
 
 /// Prepares the next run without viewers and recording, while the current one continues.
-driver::Result<std::unique_ptr<session::Session>> prepare_next(const RunCourse& course,
+driver::Result<std::unique_ptr<session::Session>> prepare_next(const RunContext& context,
                                                                const std::filesystem::path& scene) {
-  session::SessionOptions asked = course.asked;
+  session::SessionOptions asked = context.asked;
   asked.share_out = false;
   asked.record.clear();
   auto prepared = session::Session::prepare(scene, asked);
   if (!prepared) return prepared;
-  if (auto saved = find_saved(**prepared, course.options); !saved) return saved.error();
+  if (auto saved = find_saved_object(**prepared, context.options); !saved) return saved.error();
   return prepared;
 }
 
 /// Starts the recording of the prepared run and takes over the shared name of the run before it.
 /// The name is never without a run.
-driver::Result<void> begin_next(RunCourse& course, session::Session& session,
+driver::Result<void> begin_next(RunContext& context, session::Session& session,
                                 session::Session& before) {
-  if (!course.asked.record.empty()) {
-    const bool force = course.options.force;
+  if (!context.asked.record.empty()) {
+    const bool force = context.options.force;
     std::error_code unknown;
-    int number = course.number;
+    int number = context.number;
     do {
-      course.recording = numbered(course.options.record, number++);
+      context.recording = numbered(context.options.record, number++);
     } while (!force && std::filesystem::exists(
-                           session::file_of_arm(course.recording, session.arm_name(0)), unknown));
-    if (auto begun = session.begin_recording(course.recording, force); !begun) return begun;
+                           session::file_of_arm(context.recording, session.arm_name(0)), unknown));
+    if (auto begun = session.begin_recording(context.recording, force); !begun) return begun;
   }
-  return session.share(course.asked, before.shared());
+  return session.share(context.asked, before.shared());
 }
 
 /// Runs a prepared session to its end. Writes and prints the requested results, unless another run
 /// `then` follows.
-ExitCode run_one(RunCourse& course, session::Session& session,
+ExitCode run_one(RunContext& context, session::Session& session,
                  std::unique_ptr<session::Session>& then) {
-  const RunOptions& options = course.options;
-  const bool first = course.number == 1;
+  const RunOptions& options = context.options;
+  const bool first = context.number == 1;
   // An early exit leaves a valid recording without ticks.
   const auto leave = [&session](ExitCode code) {
-    if (const auto ended = session.end_recording(); !ended) complain(ended.error(), kExitTrouble);
+    if (const auto ended = session.end_recording(); !ended)
+      report_error(ended.error(), kExitTrouble);
     return code;
   };
   for (const std::string& choice : session.setup().quality_choices()) {
     report("{}: {}\n", options.quality, choice);
   }
-  tell(session.told());
+  print_lines(session.warnings());
   for (const std::string& warning : stability::stability_warnings(session.scene())) {
-    scene::logger().warn("{} See thimble tune.", warning);
+    scene::logger().warn("{} See `thimble tune`.", warning);
   }
-  const auto object = find_saved(session, options);
-  if (!object) return leave(complain(object.error(), kExitBadInput));
-  session::NextRun* next = course.next ? &*course.next : nullptr;
+  const auto object = find_saved_object(session, options);
+  if (!object) return leave(report_error(object.error(), kExitBadInput));
+  session::NextRun* next = context.next ? &*context.next : nullptr;
   const auto desk = first
                         ? session::open_viewer_requests(session, viewer_choice(options),
                                                         options.ends_with_window(),
                                                         viewer_arguments(options), next)
                         : std::make_unique<session::ViewerRequestHandler>(
-                              session, std::move(course.viewer), options.ends_with_window(), next);
+                              session, std::move(context.viewer), options.ends_with_window(), next);
   if (!desk) next = nullptr;
   if (next != nullptr) next->begin(session);
   session::ServoThread servo(session.real_time());
-  if (course.arms.real()) {
+  if (context.arms.real()) {
     if (auto granted = session::check_real_time(servo.grant(), options.no_real_time); !granted) {
-      return leave(complain(granted.error(), kExitBadInput));
+      return leave(report_error(granted.error(), kExitBadInput));
     }
   }
   if (!servo.grant().advice.empty()) scene::logger().warn("{}", servo.grant().advice);
-  if (course.stop.load()) return leave(kExitInterrupted);
-  if (!session::agree_to_forces(session, options.yes, session::user_terminal(), course.stop)) {
-    return leave(course.stop.load() ? kExitInterrupted : kExitBadInput);
+  if (context.stop.load()) return leave(kExitInterrupted);
+  if (!session::agree_to_forces(session, options.yes, session::user_terminal(), context.stop)) {
+    return leave(context.stop.load() ? kExitInterrupted : kExitBadInput);
   }
-  std::optional<scene::LeavingGuard> guard;
-  RunSides sides{.clock = course.clock, .topics = {}, .page = nullptr};
-  const std::atomic<bool>& end = next != nullptr ? next->ended() : course.stop;
-  const ExitCode ran = run_session(session, servo, desk.get(), options, sides, guard, end);
+  std::optional<scene::ForceExitGuard> guard;
+  RunHelpers helpers{.clock = context.clock, .topics = {}, .page = nullptr};
+  const std::atomic<bool>& end = next != nullptr ? next->ended() : context.stop;
+  const ExitCode ran = run_session(session, servo, desk.get(), options, helpers, guard, end);
   if (ran != kExitDone) return leave(ran);
   // A failure of the recording does not end the run.
-  const ExitCode recorded = end_recording(session, course.recording);
+  const ExitCode recorded = end_recording(session, context.recording);
   // From here Ctrl-C may kill the process: zero force is sent and the recording is closed. Not so
   // if the arm did not accept zero force.
   const scene::WritingGuard writing;
   if (zero_assured(session)) guard.reset();
   if (desk) desk->close();
-  if (next != nullptr) then = next->take(servo.join(), course.stop.load());
-  if (scene::talk() != scene::Talk::kQuiet) print_summaries(session, servo.grant());
-  for (const auto& arm : sides.topics) report("{}", arm->report());
+  if (next != nullptr) then = next->take(servo.join(), context.stop.load());
+  if (scene::verbosity() != scene::Verbosity::kQuiet) print_summaries(session, servo.grant());
+  for (const auto& arm : helpers.topics) report("{}", arm->report());
   if (then) {
     std::fflush(stdout);
-    course.viewer = desk->take_viewer();
+    context.viewer = desk->take_viewer();
     return recorded;
   }
-  const auto written = write_files(session, servo.grant(), options, sides.page.get(), *object);
+  const auto written = write_files(session, servo.grant(), options, helpers.page.get(), *object);
   if (!written) {
-    return complain(written.error(), kExitTrouble);
+    return report_error(written.error(), kExitTrouble);
   }
   const ExitCode ended = end_of(session, desk && desk->ended());
   return ended == kExitDone ? recorded : ended;
@@ -304,41 +306,41 @@ void plan_outputs(const RunOptions& options, output::OutputPlan& plan) {
 
 int run_scene(RunOptions& options) {
   if (const auto fits = check_run_options(options); !fits)
-    return complain(fits.error(), kExitBadInput);
+    return report_error(fits.error(), kExitBadInput);
   const auto arms = session::choose_run_arms(
       options.devices,
       {.arm_file = options.arm_file, .firmware = options.firmware, .unchecked = options.unchecked});
-  if (!arms) return complain(arms.error(), kExitNoDevice);
-  if (const auto fits = check_course(options, *arms); !fits) {
-    return complain(fits.error(), kExitBadInput);
+  if (!arms) return report_error(arms.error(), kExitNoDevice);
+  if (const auto fits = check_restart_options(options, *arms); !fits) {
+    return report_error(fits.error(), kExitBadInput);
   }
-  tell(arms->told);
+  print_lines(arms->warnings);
 
   // All slow work comes before the arm is opened: an open arm is served every millisecond.
   const std::atomic<bool>& stop = scene::catch_interrupts();
-  if (arms->real()) scene::leave_rather_than_stop();
+  if (arms->real()) scene::treat_sigtstp_as_exit();
   output::OutputPlan outputs;
   plan_outputs(options, outputs);
-  if (const auto begun = outputs.begin(); !begun) return complain(begun.error(), kExitBadInput);
-  RunCourse course{options, *arms, stop,          session_options(options, *arms), {}, {},
-                   {},      1,     options.record};
+  if (const auto begun = outputs.begin(); !begun) return report_error(begun.error(), kExitBadInput);
+  RunContext context{options, *arms, stop,          session_options(options, *arms), {}, {},
+                     {},      1,     options.record};
   if (options.stepped()) {
-    course.asked.own_clock = course.clock = std::make_shared<ros2::SteppedClock>(stop);
+    context.asked.own_clock = context.clock = std::make_shared<ros2::SteppedClock>(stop);
   }
-  if (course.asked.restarts) {
-    course.next.emplace([&course](const auto& scene) { return prepare_next(course, scene); },
-                        options.reloads(), options.loop, options.speed.value_or(1));
+  if (context.asked.restarts) {
+    context.next.emplace([&context](const auto& scene) { return prepare_next(context, scene); },
+                         options.reloads(), options.loop, options.speed.value_or(1));
   }
-  auto prepared = session::Session::prepare(options.scene, course.asked);
-  if (!prepared) return complain(prepared.error(), kExitBadInput);
+  auto prepared = session::Session::prepare(options.scene, context.asked);
+  if (!prepared) return report_error(prepared.error(), kExitBadInput);
   std::unique_ptr<session::Session> session = std::move(prepared).value();
   for (;;) {
     std::unique_ptr<session::Session> then;
-    const ExitCode code = run_one(course, *session, then);
+    const ExitCode code = run_one(context, *session, then);
     if (!then) return code;
-    ++course.number;
-    if (auto begun = begin_next(course, *then, *session); !begun) {
-      return complain(begun.error(), kExitTrouble);
+    ++context.number;
+    if (auto begun = begin_next(context, *then, *session); !begun) {
+      return report_error(begun.error(), kExitTrouble);
     }
     session = std::move(then);
   }
@@ -357,8 +359,7 @@ void list_shipped() {
       session::print(stdout, "  {:<18} {}\n  {:<18}   {}\n", file.name, file.path.string(), "",
                      first_sentence(scene::description_of(file.path)));
     }
-    if (files.empty())
-      session::print(stdout, "  none is known by name here; give the path of a file\n");
+    if (files.empty()) session::print(stdout, "  none found; use the path of a file\n");
   };
   print("Scenes", scene::shipped_scenes());
   print("Arms", scene::shipped_arms());
@@ -368,11 +369,11 @@ void list_shipped() {
 }  // namespace
 
 void add_run_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("run", "Touch a scene");
+  CLI::App* command = app.add_subcommand("run", "Run a scene with a simulated or a real arm");
   auto options = std::make_shared<RunOptions>();
   command
       ->add_flag_callback("--list", list_shipped,
-                          "List the scenes and arms that are known by name, and end")
+                          "List the scenes and arms that have a name, then exit")
       ->trigger_on_parse();
   add_run_options(*command, *options);
   command->callback([options, &exit_code] { exit_code = run_scene(*options); });

@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/file_options.h"
+#include "cli/report_error.h"
+#include "cli/usage/help_text.h"
 #include "files/scene_inputs.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
@@ -74,18 +75,17 @@ bool is_png(const std::filesystem::path& file) {
 
 /// Returns what is wrong with the names of the pictures, or with a film's pace; empty if nothing
 /// is.
-std::string wrong_ending(const ShotOptions& options) {
+std::string output_error(const ShotOptions& options) {
   if (!options.out.empty() && !is_png(options.out)) {
-    return "--out: pictures are written as PNG; expected a file that ends in .png, found " +
-           options.out + ".";
+    return "--out: expected a file name that ends in .png, found " + options.out + ".";
   }
   if (!options.animate.empty() && !is_png(options.animate) && !view::is_film(options.animate)) {
-    return "--animate: expected a file that ends in .mp4, .gif or .png (animated PNG), found " +
+    return "--animate: expected a file name that ends in .mp4, .gif or .png, found " +
            options.animate + ".";
   }
   if (options.pace > 50 && view::is_gif(options.animate)) {
     return fmt::format(
-        "--pace {:g}: a GIF shows at most 50 pictures a second. Set --pace 50, or name a file that "
+        "--pace {:g}: a GIF has at most 50 pictures per second. Use --pace 50, or a file name that "
         "ends in .mp4 or .png.",
         options.pace);
   }
@@ -98,10 +98,10 @@ int write_animation(const std::vector<view::Picture>& pictures, const ShotOption
   const bool film = view::is_film(options.animate);
   const auto written = film ? view::write_film(pictures, frame_time, options.animate)
                             : view::write_animated_png(pictures, frame_time, options.animate);
-  if (!written) return complain(written.error(), kExitTrouble);
+  if (!written) return report_error(written.error(), kExitTrouble);
   std::error_code unknown;
   const std::uintmax_t bytes = std::filesystem::file_size(options.animate, unknown);
-  session::print(stdout, "Animated picture: {} ({}, {} pictures of {} x {}, {:.3g} s{})\n",
+  session::print(stdout, "Animation: {} ({}, {} pictures of {} x {}, {:.3g} s{})\n",
                  options.animate, film ? "by ffmpeg" : "animated PNG", pictures.size(),
                  pictures.front().width, pictures.front().height,
                  frame_time * static_cast<double>(pictures.size()),
@@ -110,7 +110,7 @@ int write_animation(const std::vector<view::Picture>& pictures, const ShotOption
 }
 
 /// Returns an error if the times to be drawn are outside of the scene's duration; empty if not.
-std::string beyond_the_end(const ShotOptions& options) {
+std::string time_error(const ShotOptions& options) {
   const auto scene = scene::load_scene(options.scene, {.arm = options.arm_file});
   if (!scene) return {};  // the caller that plays the scene reports the error
   for (const auto& [option, time] :
@@ -125,21 +125,21 @@ std::string beyond_the_end(const ShotOptions& options) {
 int take_shot(const ShotOptions& options) {
   view::ShotChoice choice;
   if (!read_size(options.size, choice.width, choice.height)) {
-    return complain(
+    return report_error(
         {"--size: expected WIDTHxHEIGHT of 64 to 8192 pixels, found " + options.size + "."},
         kExitBadInput);
   }
   if (options.out.empty() && options.animate.empty()) {
-    return complain(
-        {"Say where the picture goes: --out FILE.png, or --animate FILE.mp4, .gif or .png."},
+    return report_error(
+        {"--out FILE.png or --animate FILE (.mp4, .gif or .png) is missing. Add one of them."},
         kExitBadInput);
   }
-  for (const std::string& wrong : {wrong_ending(options), beyond_the_end(options)}) {
-    if (!wrong.empty()) return complain({wrong}, kExitBadInput);
+  for (const std::string& wrong : {output_error(options), time_error(options)}) {
+    if (!wrong.empty()) return report_error({wrong}, kExitBadInput);
   }
   if (view::is_film(options.animate)) {
     if (const auto found = view::find_ffmpeg(); !found) {
-      return complain(found.error(), kExitTrouble);
+      return report_error(found.error(), kExitTrouble);
     }
   }
   output::OutputPlan plan;
@@ -147,8 +147,8 @@ int take_shot(const ShotOptions& options) {
   for (const auto& file : scene::scene_inputs(options.scene)) plan.read(file);
   plan.write("--out", options.out, output::kPng);
   plan.write("--animate", options.animate,
-             view::is_film(options.animate) ? output::kFilm : output::kPng);
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+             view::is_film(options.animate) ? output::kAnimation : output::kPng);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   choice.paint.shading =
       options.shading == "gouraud" ? view::Shading::kGouraud : view::Shading::kPhong;
   choice.paint.edges = options.edges == "on"    ? view::Edges::kOn
@@ -172,7 +172,7 @@ int take_shot(const ShotOptions& options) {
     at = *options.at;
   } else {
     const auto found = view::strongest_moment(options.scene, session);
-    if (!found) return complain(found.error(), kExitBadInput);
+    if (!found) return report_error(found.error(), kExitBadInput);
     at = *found;
   }
   const bool animated = !options.animate.empty();
@@ -182,11 +182,11 @@ int take_shot(const ShotOptions& options) {
   for (int i = 1; animated && i < pictures_wanted; ++i) times.push_back(at + i / options.pace);
   session.duration = times.back() + 0.1;
   auto played = view::PlayedScene::open(options.scene, session);
-  if (!played) return complain(played.error(), kExitBadInput);
+  if (!played) return report_error(played.error(), kExitBadInput);
   const auto context = view::OffscreenContext::open();
-  if (!context) return complain(context.error(), kExitTrouble);
+  if (!context) return report_error(context.error(), kExitTrouble);
   auto programs = view::ScenePrograms::make();
-  if (!programs) return complain(programs.error(), kExitTrouble);
+  if (!programs) return report_error(programs.error(), kExitTrouble);
   view::ShotPainter painter((*played)->drawn(), choice, std::move(programs).value());
   std::vector<view::Picture> pictures;
   (*played)->play(times, [&](view::DrawnMoment& moment, const view::Plots& plots) {
@@ -200,7 +200,7 @@ int take_shot(const ShotOptions& options) {
     const auto written =
         view::write_png(pictures.front(), options.out,
                         options.all_colours ? view::PngColours::kAll : view::PngColours::k256);
-    if (!written) return complain(written.error(), kExitTrouble);
+    if (!written) return report_error(written.error(), kExitTrouble);
     scene::print_format("Picture: %s\n", options.out.c_str());
   }
   return animated ? write_animation(pictures, options) : kExitDone;
@@ -209,50 +209,75 @@ int take_shot(const ShotOptions& options) {
 }  // namespace
 
 void add_shot_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("shot", "Draw a moment of a scene");
+  CLI::App* command = app.add_subcommand("shot", "Draw a picture or animation of a scene");
   auto options = std::make_shared<ShotOptions>();
   add_scene_option(*command, options->scene)->required();
-  command->add_option("--out", options->out, "PNG file to write");
-  command->add_option("--at", options->at, "Second to draw; when most is felt if absent")
-      ->check(CLI::Range(0.0, 86400.0));
-  CLI::Option* animate = command->add_option(
-      "--animate", options->animate,
-      "MP4, GIF (both by ffmpeg) or animated PNG to write, from --at, by the file's ending");
-  command->add_option("--until", options->until, "Second at which the animation ends")
+  add_arm_option(*command, options->arm_file, "Arm file to use instead of the scene's");
+  constexpr const char* kOutput = "Output";
+  command->add_option("--out", options->out, "Picture to write")
+      ->option_text("FILE.png")
+      ->group(kOutput);
+  CLI::Option* animate =
+      command->add_option("--animate", options->animate, "Animation to write: .mp4, .gif or .png")
+          ->option_text("FILE")
+          ->group(kOutput);
+  command->add_option("--at", options->at, "Time of the picture, s (default: largest force)")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->group(kOutput);
+  command->add_option("--until", options->until, "Time at which the animation ends, s")
       ->needs(animate)
-      ->check(CLI::Range(0.0, 86400.0));
-  command->add_option("--pace", options->pace, "Pictures a second of the animation")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->group(kOutput);
+  command->add_option("--pace", options->pace, "Pictures per second of the animation")
       ->needs(animate)
       ->check(CLI::Range(1.0, 60.0))
-      ->capture_default_str();
-  command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
-  command
-      ->add_option("--camera", options->camera,
-                   "YAW PITCH [CLOSER]: degrees about z from the user, degrees above the horizon, "
-                   "factor; framed by itself if absent")
-      ->expected(2, 3);
-  add_arm_option(*command, options->arm_file, "Arm file in place of the scene's own");
-  command->add_option("--shading", options->shading, "phong: per pixel; gouraud: per corner")
-      ->check(CLI::IsMember({"phong", "gouraud"}))
-      ->capture_default_str();
-  command->add_option("--edges", options->edges, "Outlines of polygons: auto where they are few")
-      ->check(CLI::IsMember({"auto", "on", "off"}))
-      ->capture_default_str();
-  command->add_flag("--edge-planes", options->edge_planes,
-                    "Show the active triangle and the planes that bound its touch");
-  command->add_flag("--contact", options->contact,
-                    "Show the normal at the touch and the force along the surface");
-  command->add_flag("--fields", options->fields, "Show the forces of fields as arrows");
-  command->add_flag("--trail", options->trail,
-                    "Show where the tip was in the last 4 s, coloured by force");
-  command->add_flag("--surfaces", options->surfaces, "Mark what has a texture or friction");
-  command->add_option("--theme", options->theme, "Background: light or dark")
+      ->capture_default_str()
+      ->group(kOutput);
+  command->add_option("--size", options->size, "Size in pixels")
+      ->option_text("WIDTHxHEIGHT")
+      ->capture_default_str()
+      ->group(kOutput);
+  command->add_flag("--all-colours", options->all_colours, "Write all colours, not the best 256")
+      ->group(kOutput);
+  constexpr const char* kLook = "Look";
+  command->add_option("--camera", options->camera, "Direction and zoom of the camera")
+      ->option_text("YAW PITCH [ZOOM]")
+      ->expected(2, 3)
+      ->group(kLook);
+  command->add_option("--theme", options->theme, "Colour of the background")
       ->check(CLI::IsMember({"light", "dark"}))
-      ->capture_default_str();
-  command->add_flag("--plots", options->plots, "Show force and depth over time below");
-  command->add_flag("--no-arm", options->no_arm, "Leave the arm out");
-  command->add_flag("--no-caption", options->no_caption, "Leave the words below out");
-  command->add_flag("--all-colours", options->all_colours, "Write all colours, not the best 256");
+      ->capture_default_str()
+      ->group(kLook);
+  command->add_option("--shading", options->shading, "Shading per pixel, or per vertex")
+      ->check(CLI::IsMember({"phong", "gouraud"}))
+      ->capture_default_str()
+      ->group(kLook);
+  command->add_option("--edges", options->edges, "Outlines of polygons; auto: if there are few")
+      ->check(CLI::IsMember({"auto", "on", "off"}))
+      ->capture_default_str()
+      ->group(kLook);
+  command->add_flag("--no-arm", options->no_arm, "Do not draw the arm")->group(kLook);
+  command->add_flag("--no-caption", options->no_caption, "Do not draw the caption")->group(kLook);
+  constexpr const char* kShow = "Overlays";
+  command
+      ->add_flag("--edge-planes", options->edge_planes,
+                 "Show the active triangle and its bounding planes")
+      ->group(kShow);
+  command
+      ->add_flag("--contact", options->contact, "Show the contact normal and the tangential force")
+      ->group(kShow);
+  command->add_flag("--fields", options->fields, "Show the forces of fields as arrows")
+      ->group(kShow);
+  command->add_flag("--trail", options->trail, "Show the last 4 s of the tip, coloured by force")
+      ->group(kShow);
+  command->add_flag("--surfaces", options->surfaces, "Mark surfaces with texture or friction")
+      ->group(kShow);
+  command->add_flag("--plots", options->plots, "Show force and depth over time below the scene")
+      ->group(kShow);
+  add_example(*command, "thimble shot elephant --at 2 --out elephant.png",
+              "--animate  From --at to --until; MP4 and GIF require ffmpeg, PNG is animated.\n"
+              "--camera   Degrees about z from the user, degrees above the horizon, and a zoom\n"
+              "           factor. By default the camera frames the scene.");
   command->callback([options, &exit_code] { exit_code = take_shot(*options); });
 }
 

@@ -8,8 +8,9 @@
 #include <system_error>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/file_options.h"
+#include "cli/report_error.h"
+#include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
 #include "ros2/ros_latency.h"
@@ -54,43 +55,43 @@ int tune_scene(const TuneCommand& command) {
   plan.read(command.scene);
   plan.read(command.arm_file);
   plan.write_folder("--out", command.folder, {"figures.json"});
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto scene = scene::load_scene(command.scene, {.arm = command.arm_file});
-  if (!scene) return complain(scene.error(), kExitBadInput);
+  if (!scene) return report_error(scene.error(), kExitBadInput);
   if (!scene->arms.front().arm.can_simulate) {
-    return complain({"The arm file has no section simulation: mass, friction and hand are not "
-                     "known. Add one (app/arms/vintage_phantom.yaml shows the form)."},
-                    kExitBadInput);
+    return report_error(
+        {"The arm file has no section `simulation` with mass, friction and hand. Add one, as "
+         "in app/arms/vintage_phantom.yaml."},
+        kExitBadInput);
   }
   // Errors of a mesh also apply here.
   const auto objects = scene::SceneObjects::build(*scene);
-  if (!objects) return complain(objects.error(), kExitBadInput);
+  if (!objects) return report_error(objects.error(), kExitBadInput);
   for (const std::string& note : (*objects)->notes())
     scene::print_format("Note      %s\n", note.c_str());
   stability::TuneOptions options{.period_spread = 1e-6 * command.spread_us};
   if (command.measure > 0) {
     options.period_spread = measured_spread(scene->rate, command.measure);
-    scene::print_format(
-        "Measured  periods of this computer spread by %.1f us (standard deviation).\n",
-        1e6 * options.period_spread);
+    scene::print_format("Measured  period of this computer: standard deviation %.1f us.\n",
+                        1e6 * options.period_spread);
   }
   if (command.topics) {
     constexpr double kDuration = 5;  // s [chosen]
     const auto ages =
         ros2::measure_ros_latency(command.scene, command.arm_file, command.domain, kDuration);
-    if (!ages) return complain(ages.error(), kExitTrouble);
+    if (!ages) return report_error(ages.error(), kExitTrouble);
     options.topics = stability::AnswerAges{.median = 1e-9 * ages->percentile(0.5),
-                                           .most = 1e-9 * ages->percentile(0.99)};
+                                           .percentile_99 = 1e-9 * ages->percentile(0.99)};
   }
   const auto tuned = stability::tune(*scene, options);
-  if (!tuned) return complain(tuned.error(), kExitBadInput);
+  if (!tuned) return report_error(tuned.error(), kExitBadInput);
   scene::print_format("%s\n%s", tuned->text.c_str(), report::figure_table(tuned->figures).c_str());
   if (!command.folder.empty()) {
     std::error_code status;
     std::filesystem::create_directories(command.folder, status);
     const std::filesystem::path file = std::filesystem::path(command.folder) / "figures.json";
     if (const auto written = report::write_figures(tuned->figures, file); !written) {
-      return complain(written.error(), kExitTrouble);
+      return report_error(written.error(), kExitTrouble);
     }
     scene::print_format("Written to %s.\n", file.c_str());
   }
@@ -103,30 +104,30 @@ int tune_scene(const TuneCommand& command) {
 }  // namespace
 
 void add_tune_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
-      "tune", "Tell what stiffness, damping and friction this arm, loop and hand can carry");
+  CLI::App* command =
+      app.add_subcommand("tune", "Compute the stiffness, damping and friction that remain stable");
   auto options = std::make_shared<TuneCommand>();
   add_scene_option(*command, options->scene)->required();
-  add_arm_option(*command, options->arm_file, "Arm file in place of the scene's own");
-  command->add_option("--out", options->folder, "Folder for figures.json");
-  CLI::Option* spread = command
-                            ->add_option("--spread", options->spread_us,
-                                         "Standard deviation of the loop's period, in microseconds")
-                            ->check(CLI::Range(0.0, 1e6))
-                            ->capture_default_str();
-  command
-      ->add_option("--measure", options->measure,
-                   "Measure that on this computer for so many seconds instead")
+  add_arm_option(*command, options->arm_file, "Arm file to use instead of the scene's");
+  command->add_option("--out", options->folder, "Write figures.json to this folder")
+      ->option_text("DIR");
+  CLI::Option* spread =
+      command
+          ->add_option("--spread", options->spread_us, "Standard deviation of the loop period, us")
+          ->check(CLI::Range(0.0, 1e6))
+          ->capture_default_str();
+  command->add_option("--measure", options->measure, "Measure that on this computer for N seconds")
       ->check(CLI::Range(0.1, 600.0))
       ->excludes(spread);
-  CLI::Option* topics = command->add_flag(
-      "--ros2", options->topics,
-      "Measure for 5 s how late forces come that a program at the other end of ROS 2 topics "
-      "computes, and tell what wall it can make (package thimble-ros2)");
-  command->add_option("--ros-domain", options->domain, "ROS_DOMAIN_ID of that measurement")
+  CLI::Option* topics = command->add_flag("--ros2", options->topics,
+                                          "Also compute the stiffest wall over ROS 2 topics");
+  command->add_option("--ros-domain", options->domain, "ROS_DOMAIN_ID of the measurement")
       ->check(CLI::Range(0, 232))
       ->capture_default_str()
       ->needs(topics);
+  add_example(*command, "thimble tune elephant",
+              "--ros2 measures for 5 s the delay of forces that a program at the other end of\n"
+              "the topics computes (package thimble-ros2).");
   command->callback([options, &exit_code] { exit_code = tune_scene(*options); });
 }
 

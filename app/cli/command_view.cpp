@@ -11,14 +11,15 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/parts/part.h"
+#include "cli/report_error.h"
+#include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "report/html/page_libraries.h"
-#include "share/knob_order.h"
 #include "share/run_attachment.h"
 #include "share/shared_memory.h"
 #include "share/steer/save_knobs.h"
+#include "share/turn_knob.h"
 #include "signals.h"
 #include "thimble/scene/shipped_files.h"
 #include "web/web_server.h"
@@ -28,7 +29,7 @@ namespace {
 
 // Maximum time to wait for the next run when a run ends: it is already prepared, and only the
 // recording has to be closed. Chosen.
-constexpr std::chrono::seconds kNextRunMost{10};
+constexpr std::chrono::seconds kNextRunTimeout{10};
 
 struct ViewOptions {
   std::vector<std::string> shown;  // a run, or recordings
@@ -50,11 +51,11 @@ struct ViewOptions {
 
   /// Returns the name of the run; empty: the newest.
   std::string run() const { return shown.empty() ? "" : shown.front(); }
-  bool asks() const {
+  bool has_requests() const {
     return !turn.empty() || pause || resume || stop || !record.empty() || record_stop || restart ||
            steps > 0 || speed || !loop.empty() || !scene.empty() || save_knobs;
   }
-  bool is_for_runs() const { return list || text || web || follow || asks(); }
+  bool is_for_runs() const { return list || text || web || follow || has_requests(); }
 };
 
 int list_runs() {
@@ -72,16 +73,17 @@ int list_runs() {
     for (std::size_t i = 0; i < scene.knobs.size(); ++i) {
       const session::SharedScene::Knob& knob = scene.knobs[i];
       scene::print_format("    %s = %.4g %s (%.4g to %.4g)\n", knob.name.c_str(),
-                          (*reader)->knob(i), knob.unit.c_str(), knob.least, knob.most);
+                          (*reader)->knob(i), knob.unit.c_str(), knob.min, knob.max);
     }
   }
   if (runs.empty())
-    scene::print_format("No run is shown; start one with `thimble run SCENE --view`.\n");
+    scene::print_format("No run is active. Start one with `thimble run SCENE --view`.\n");
   return kExitDone;
 }
 
 /// Sends the requests that change the course of the run: speed, loop, steps, scene, restart.
-driver::Result<void> ask_course(session::SharedReader& reader, const ViewOptions& options) {
+driver::Result<void> send_control_requests(session::SharedReader& reader,
+                                           const ViewOptions& options) {
   if (options.speed) {
     if (auto asked = reader.ask_speed(*options.speed); !asked) return asked;
   }
@@ -109,18 +111,18 @@ driver::Result<void> ask_course(session::SharedReader& reader, const ViewOptions
 int save(const session::SharedReader& reader, const ViewOptions& options) {
   const auto saved =
       session::save_knobs(reader, {.file = options.save_as, .over = options.overwrite});
-  if (!saved) return complain(saved.error(), kExitBadInput);
+  if (!saved) return report_error(saved.error(), kExitBadInput);
   scene::print_format("%s\n", saved->text().c_str());
   return kExitDone;
 }
 
 /// Sends all requests to a run, once.
-driver::Result<void> ask_once(session::SharedReader& reader, const ViewOptions& options) {
+driver::Result<void> send_once(session::SharedReader& reader, const ViewOptions& options) {
   for (const std::string& order : options.turn) {
     if (auto turned = session::turn_knob(reader, order); !turned) return turned;
   }
   if (options.pause || options.resume) reader.ask_pause(options.pause);
-  if (auto asked = ask_course(reader, options); !asked) return asked;
+  if (auto asked = send_control_requests(reader, options); !asked) return asked;
   const bool taken = (options.record.empty() || reader.ask_record(options.record)) &&
                      (!options.record_stop || reader.ask_record_stop());
   if (!taken) return driver::Error{"Another viewer is sending a request; try again."};
@@ -129,20 +131,22 @@ driver::Result<void> ask_once(session::SharedReader& reader, const ViewOptions& 
 }
 
 /// Sends all requests. If the run ends meanwhile, sends them once more to the next run.
-int ask(const ViewOptions& options) {
-  const auto latest = std::chrono::steady_clock::now() + kNextRunMost;
+int send_requests(const ViewOptions& options) {
+  const auto latest = std::chrono::steady_clock::now() + kNextRunTimeout;
   std::string run = options.run();
   for (bool first = true;; first = false) {
     auto attached = session::SharedReader::attach(run);
     if (!attached && options.stop && !first) return kExitDone;  // the run has already ended
-    if (!attached) return complain(attached.error(), kExitBadInput);
+    if (!attached) return report_error(attached.error(), kExitBadInput);
     session::SharedReader& reader = **attached;
     run = reader.name();
-    const auto asked = reader.heard() ? ask_once(reader, options) : reader.heard();
-    const auto heard = reader.heard();
-    if (heard && !asked) return complain(asked.error(), kExitBadInput);
+    const auto asked =
+        reader.check_accepted() ? send_once(reader, options) : reader.check_accepted();
+    const auto heard = reader.check_accepted();
+    if (heard && !asked) return report_error(asked.error(), kExitBadInput);
     if (heard) return options.save_knobs ? save(reader, options) : kExitDone;
-    if (std::chrono::steady_clock::now() >= latest) return complain(heard.error(), kExitBadInput);
+    if (std::chrono::steady_clock::now() >= latest)
+      return report_error(heard.error(), kExitBadInput);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
 }
@@ -168,10 +172,10 @@ void print_line(const session::SharedReader& reader) {
 }
 
 /// Prints the state of a run once a second, without a window.
-int tell(const ViewOptions& options) {
+int print_states(const ViewOptions& options) {
   const std::atomic<bool>& stop = scene::catch_interrupts();
   session::RunAttachment runs(options.run());
-  std::string told;
+  std::string last_notice;
   auto next_line = std::chrono::steady_clock::now();
   const auto end = next_line + std::chrono::duration<double>(options.seconds);
   while (!stop.load()) {
@@ -179,21 +183,21 @@ int tell(const ViewOptions& options) {
     if (runs.step()) {
       scene::print_format("Watching %s: %s\n", runs.name().c_str(),
                           runs.reader()->scene().name.c_str());
-      told.clear();
+      last_notice.clear();
     }
     std::string notice = runs.notice();
     if (notice.empty() && runs.reader() != nullptr) notice = runs.reader()->notice();
     const bool ended =
         runs.reader() != nullptr && runs.reader()->state() == session::RunState::kEnded;
     const auto now = std::chrono::steady_clock::now();
-    if (runs.reader() != nullptr && told != notice && ended) print_line(*runs.reader());
+    if (runs.reader() != nullptr && last_notice != notice && ended) print_line(*runs.reader());
     if (runs.reader() != nullptr && !ended && now >= next_line) {
       print_line(*runs.reader());
       next_line = now + std::chrono::seconds(1);
     }
-    if (!notice.empty() && notice != told) scene::print_format("%s\n", notice.c_str());
+    if (!notice.empty() && notice != last_notice) scene::print_format("%s\n", notice.c_str());
     std::fflush(stdout);
-    told = notice;
+    last_notice = notice;
     if (runs.over() && !options.follow) return kExitDone;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
@@ -203,15 +207,15 @@ int tell(const ViewOptions& options) {
 /// Shows a run in browsers on this computer.
 int serve(const ViewOptions& options) {
   if (auto libraries = report::read_page_libraries(); !libraries) {
-    return complain(libraries.error(), kExitBadInput);
+    return report_error(libraries.error(), kExitBadInput);
   }
   const std::atomic<bool>& stop = scene::catch_interrupts();
   session::RunAttachment runs(options.run());
   const session::SharedReader* watched = nullptr;
   auto server = web::WebServer::listen(runs, options.port);
-  if (!server) return complain(server.error(), kExitBadInput);
+  if (!server) return report_error(server.error(), kExitBadInput);
   scene::print_format("Open %s\n", (*server)->address().c_str());
-  std::string told;
+  std::string last_notice;
   const auto end =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(options.seconds);
   int exit_code = kExitInterrupted;
@@ -222,9 +226,9 @@ int serve(const ViewOptions& options) {
       scene::print_format("Watching %s: %s\n", runs.name().c_str(), watched->scene().name.c_str());
     }
     const std::string notice = runs.notice();
-    if (!notice.empty() && notice != told) scene::print_format("%s\n", notice.c_str());
+    if (!notice.empty() && notice != last_notice) scene::print_format("%s\n", notice.c_str());
     std::fflush(stdout);
-    told = notice;
+    last_notice = notice;
     const bool late = options.seconds > 0 && std::chrono::steady_clock::now() >= end;
     if ((!runs.over() || options.follow) && !late) continue;
     exit_code = kExitDone;
@@ -243,18 +247,21 @@ bool is_recording(const std::string& shown) {
 int view_recordings(const ViewOptions& options, const ShowWindow& show_window) {
   for (const std::string& file : options.shown) {
     if (is_recording(file)) continue;
-    return complain({file + " is the name of a run; show one run, or recordings."}, kExitBadInput);
+    return report_error({file + " is the name of a run. Name either one run or recordings."},
+                        kExitBadInput);
   }
   if (options.is_for_runs()) {
-    return complain({options.shown.front() +
-                     " is a recording: nothing can be asked of it, and as text it is written by "
-                     "`thimble export`."},
-                    kExitBadInput);
+    return report_error(
+        {options.shown.front() +
+         " is a recording, so options that control a run cannot be used. To write it as "
+         "text, use `thimble export`."},
+        kExitBadInput);
   }
   if (!show_window.recordings) {
-    return complain({"The window is not installed: " + how_to_get(kViewer) +
-                     "; or make a page for a browser: `thimble replay FILE --page FILE.html`."},
-                    kExitBadInput);
+    return report_error(
+        {"The window is not installed: " + how_to_get(kViewer) +
+         "; or write a page for a browser: `thimble replay FILE --page FILE.html`."},
+        kExitBadInput);
   }
   return show_window.recordings(options.shown, options.seconds);
 }
@@ -264,16 +271,17 @@ int show(const ViewOptions& options, const ShowWindow& show_window) {
     return view_recordings(options, show_window);
   }
   if (options.shown.size() > 1) {
-    return complain({"A window shows one run; open one for each."}, kExitBadInput);
+    return report_error({"RUN: expected one run per window. Open a window for each."},
+                        kExitBadInput);
   }
   if (options.list) return list_runs();
-  if (options.asks()) return ask(options);
-  if (options.text) return tell(options);
+  if (options.has_requests()) return send_requests(options);
+  if (options.text) return print_states(options);
   if (options.web) return serve(options);
   if (!show_window.runs) {
-    return complain({"The window is not installed: " + how_to_get(kViewer) +
-                     "; or use `thimble view --text` or `thimble view --web`."},
-                    kExitBadInput);
+    return report_error({"The window is not installed: " + how_to_get(kViewer) +
+                         "; or use `thimble view --text` or `thimble view --web`."},
+                        kExitBadInput);
   }
   session::RunAttachment runs(options.run());
   return show_window.runs(runs, options.seconds);
@@ -282,66 +290,87 @@ int show(const ViewOptions& options, const ShowWindow& show_window) {
 }  // namespace
 
 void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_window) {
-  CLI::App* command =
-      app.add_subcommand("view", "Show a run that goes on in another process, or a recording");
+  CLI::App* command = app.add_subcommand("view", "Show a run of another process, or a recording");
   auto options = std::make_shared<ViewOptions>();
-  command->add_option(
-      "RUN", options->shown,
-      "Name of the run, the newest if absent; or a recording (.h5), of a scene with "
-      "several arms one of each");
-  command->add_flag("--list", options->list, "List the runs and their knobs, and leave");
+  command->add_option("RUN", options->shown,
+                      "Name of a run (default: the newest), or recordings (.h5)");
+  constexpr const char* kViewing = "Viewing";
+  command->add_flag("--list", options->list, "List the runs and their knobs, then exit")
+      ->group(kViewing);
   CLI::Option* text =
-      command->add_flag("--text", options->text, "Print a line a second in place of a window");
+      command->add_flag("--text", options->text, "Print one line per second, without a window")
+          ->group(kViewing);
   CLI::Option* web =
-      command->add_flag("--web", options->web, "Show it in a browser on this computer")
-          ->excludes(text);
-  command->add_option("--port", options->port, "With --web: the port; one that is free if absent")
+      command->add_flag("--web", options->web, "Show the run in a browser on this computer")
+          ->excludes(text)
+          ->group(kViewing);
+  command->add_option("--port", options->port, "Port of --web (default: any free port)")
       ->check(CLI::Range(1, 65535))
-      ->needs(web);
-  command->add_flag("--follow", options->follow,
-                    "With --text or --web: wait for the next run of that name when one ends");
-  command->add_option("--turn", options->turn, "Turn a knob of the run, NAME=VALUE, and leave");
-  CLI::Option* pause = command->add_flag("--pause", options->pause, "Pause the run, and leave");
-  command->add_flag("--resume", options->resume, "Let a paused run go on, and leave")
-      ->excludes(pause);
-  CLI::Option* record =
-      command->add_option("--record", options->record, "Record the run from now on, and leave");
-  command->add_flag("--record-stop", options->record_stop, "End the recording, and leave")
-      ->excludes(record);
-  command->add_flag("--stop", options->stop, "End the run, and leave");
+      ->needs(web)
+      ->group(kViewing);
   command
-      ->add_option("--step", options->steps,
-                   "Let a paused run go on by so many ticks, and leave; with a simulated arm and "
-                   "simulated time, as for the next")
-      ->check(CLI::Range(std::uint64_t{1}, session::kStepsMost));
+      ->add_flag("--follow", options->follow,
+                 "With --text, --web: wait for the next run of that name")
+      ->group(kViewing);
+  command->add_option("--for", options->seconds, "Exit after N seconds")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->group(kViewing);
+  constexpr const char* kControl = "Control the run, then exit";
+  command->add_option("--turn", options->turn, "Set knobs of the run")
+      ->option_text("NAME=VALUE ...")
+      ->group(kControl);
+  CLI::Option* pause =
+      command->add_flag("--pause", options->pause, "Pause the run")->group(kControl);
+  command->add_flag("--resume", options->resume, "Resume a paused run")
+      ->excludes(pause)
+      ->group(kControl);
+  command->add_option("--step", options->steps, "Advance a paused run by N ticks (simulated time)")
+      ->check(CLI::Range(std::uint64_t{1}, session::kStepsMax))
+      ->group(kControl);
   command
       ->add_option("--speed", options->speed,
-                   "Let the run go at this pace, times real time, and leave; its ticks stay the "
-                   "same to the bit")
-      ->check(CLI::Range(session::kSpeedLeast, session::kSpeedMost));
+                   "Speed relative to real time; results stay bit-identical")
+      ->check(CLI::Range(session::kSpeedMin, session::kSpeedMax))
+      ->group(kControl);
   CLI::Option* restart =
-      command->add_flag("--restart", options->restart,
-                        "Begin the run anew from its first tick, with a simulated arm, and leave");
-  command
-      ->add_option("--scene", options->scene,
-                   "Let the run begin anew with this scene, a file or a name, and leave")
-      ->excludes(restart);
-  command->add_option("--loop", options->loop, "Begin the run anew whenever it ends, or no more")
-      ->check(CLI::IsMember({"on", "off"}));
-  CLI::Option* save = command->add_flag(
-      "--save-knobs", options->save_knobs,
-      "Write the run's scene with its knobs as they are into a new file beside it, tell which, and "
-      "leave; of a scene that came with Thimble into your own scenes");
+      command->add_flag("--restart", options->restart, "Restart the run from its first tick")
+          ->group(kControl);
+  command->add_option("--scene", options->scene, "Restart the run with this scene")
+      ->option_text("NAME|FILE")
+      ->excludes(restart)
+      ->group(kControl);
+  command->add_option("--loop", options->loop, "Restart the run when it ends")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->group(kControl);
+  command->add_flag("--stop", options->stop, "End the run")->group(kControl);
+  constexpr const char* kSave = "Save from the run, then exit";
+  CLI::Option* record =
+      command->add_option("--record", options->record, "Start a recording of the run")
+          ->option_text("FILE")
+          ->group(kSave);
+  command->add_flag("--record-stop", options->record_stop, "Stop the recording")
+      ->excludes(record)
+      ->group(kSave);
+  CLI::Option* save = command
+                          ->add_flag("--save-knobs", options->save_knobs,
+                                     "Save the scene with its current knobs as a new file")
+                          ->group(kSave);
   CLI::Option* save_as =
-      command->add_option("--save-as", options->save_as, "With --save-knobs: into this new file")
-          ->needs(save);
+      command->add_option("--save-as", options->save_as, "File to create with --save-knobs")
+          ->option_text("FILE")
+          ->needs(save)
+          ->group(kSave);
   command
       ->add_flag("--overwrite", options->overwrite,
-                 "With --save-knobs: over the scene's file, if it is your own")
+                 "With --save-knobs: overwrite your own scene file")
       ->needs(save)
-      ->excludes(save_as);
-  command->add_option("--for", options->seconds, "Stop looking on after so many seconds")
-      ->check(CLI::Range(0.1, 86400.0));
+      ->excludes(save_as)
+      ->group(kSave);
+  add_example(*command, "thimble view elephant --pause",
+              "A scene with several arms has one recording per arm; name all of them.\n"
+              "--step, --speed, --restart and --scene require a simulated arm.\n"
+              "--save-knobs prints the new file. It is next to the scene file, or in your own\n"
+              "scenes folder for a scene that came with Thimble.");
   command->callback(
       [options, show_window, &exit_code] { exit_code = show(*options, show_window); });
 }

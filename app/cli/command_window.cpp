@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "output/output_plan.h"
 #include "view/playback/recording_view.h"
 #include "view/window.h"
@@ -18,62 +18,74 @@ void add_window_command(CLI::App& app, int& exit_code) {
     choice->seconds = seconds;
     output::OutputPlan plan;
     plan.write("--picture", choice->last_picture, output::kPng);
-    if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+    if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
     const auto shown = view::show_window(runs, *choice);
-    return shown ? kExitDone : complain(shown.error(), kExitTrouble);
+    return shown ? kExitDone : report_error(shown.error(), kExitTrouble);
   };
   show.recordings = [choice](const std::vector<std::string>& files, double seconds) -> int {
     choice->seconds = seconds;
     if (choice->felt.sound || choice->felt.rumble) {
-      return complain({"--sound and --rumble are for runs; `thimble export FILE --sound FILE.wav` "
-                       "writes the sound of a recording."},
-                      kExitBadInput);
+      return report_error(
+          {"--sound and --rumble require a run. For the sound of a recording, use `thimble "
+           "export FILE --sound FILE.wav`."},
+          kExitBadInput);
     }
     output::OutputPlan plan;
     for (const std::string& file : files) plan.read(file);
     plan.write("--picture", choice->last_picture, output::kPng);
-    if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+    if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
     const auto recording = view::RecordingView::open({files.begin(), files.end()});
-    if (!recording) return complain(recording.error(), kExitBadInput);
+    if (!recording) return report_error(recording.error(), kExitBadInput);
     const auto shown = view::show_recording(**recording, files.front(), *choice);
-    return shown ? kExitDone : complain(shown.error(), kExitTrouble);
+    return shown ? kExitDone : report_error(shown.error(), kExitTrouble);
   };
   add_view_command(app, exit_code, show);
   CLI::App* command = app.get_subcommand("view");
-  command
-      ->add_option("--ui-scale", choice->ui_scale,
-                   "Scale of text and panel; the monitor's if absent")
-      ->check(CLI::Range(0.75, 3.0))
-      ->excludes("--text");
-  command
-      ->add_option_function<std::string>(
-          "--theme",
-          [choice](const std::string& theme) {
-            choice->theme = theme == "dark" ? view::Theme::kDark : view::Theme::kLight;
-          },
-          "Looks: light or dark; light if absent")
-      ->check(CLI::IsMember({"light", "dark"}))
-      ->excludes("--text");
-  command->add_option("--picture", choice->last_picture, "PNG of the window to write then")
-      ->needs("--for")
-      ->excludes("--text");
+  constexpr const char* kWindow = "Window";
   command
       ->add_option_function<std::string>(
           "--hand",
           [choice](const std::string& name) {
             choice->hand = view::hand_source_named(name).value_or(choice->hand);
           },
-          "Who leads the simulated hand of a run that lets a viewer: mouse (if left out), "
-          "keyboard, gamepad or spacemouse")
+          "What moves the hand of the run (default mouse)")
       ->check(CLI::IsMember(
           std::vector<std::string>(view::kHandSources.begin(), view::kHandSources.end())))
-      ->excludes("--text");
-  command->add_flag("--sound", choice->felt.sound, "Play what is felt as sound")
-      ->excludes("--text");
-  command->add_flag("--rumble", choice->felt.rumble, "Let a gamepad rumble as hard as the touch is")
-      ->excludes("--text");
-  command->add_option("--at", choice->at, "Of a recording: stand still at this second at first")
-      ->check(CLI::Range(0.0, 86400.0));
+      ->excludes("--text")
+      ->group(kWindow);
+  command->add_flag("--sound", choice->felt.sound, "Play the contact as sound")
+      ->excludes("--text")
+      ->group(kWindow);
+  command
+      ->add_flag("--rumble", choice->felt.rumble, "Rumble a gamepad in proportion to the contact")
+      ->excludes("--text")
+      ->group(kWindow);
+  command->add_option("--at", choice->at, "Time at which a recording is first shown, s")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->group(kWindow);
+  command
+      ->add_option("--ui-scale", choice->ui_scale,
+                   "Scale of text and panel (default: the monitor's)")
+      ->check(CLI::Range(0.75, 3.0))
+      ->excludes("--text")
+      ->group(kWindow);
+  command
+      ->add_option_function<std::string>(
+          "--theme",
+          [choice](const std::string& theme) {
+            choice->theme = theme == "dark" ? view::Theme::kDark : view::Theme::kLight;
+          },
+          "Colour theme (default light)")
+      ->check(CLI::IsMember({"light", "dark"}))
+      ->excludes("--text")
+      ->group(kWindow);
+  command
+      ->add_option("--picture", choice->last_picture,
+                   "Write a PNG of the window at the end of --for")
+      ->option_text("FILE")
+      ->needs("--for")
+      ->excludes("--text")
+      ->group(kWindow);
 }
 
 bool has_window() {

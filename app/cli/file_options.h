@@ -8,9 +8,9 @@ namespace thimble::cli {
 
 /// Adds the scene of a command: a file, or a name from `thimble run --list`. `scene` becomes the
 /// path of the file. Real-time: never from the servo thread.
-CLI::Option* add_scene_option(CLI::App& command, std::string& scene,
-                              const std::string& name = "SCENE",
-                              const std::string& about = "Scene file (YAML)");
+CLI::Option* add_scene_option(
+    CLI::App& command, std::string& scene, const std::string& name = "SCENE",
+    const std::string& about = "Scene: a name from `thimble run --list`, or a YAML file");
 
 /// Adds --arm: an arm file, or a name from `thimble run --list`. `arm_file` becomes the path of the
 /// file. Real-time: never from the servo thread.

@@ -13,9 +13,11 @@ struct LogOptions {
   bool quiet = false;
   std::string file;
 
-  scene::Talk talk() const {
-    if (quiet) return scene::Talk::kQuiet;
-    return more == 0 ? scene::Talk::kNormal : more == 1 ? scene::Talk::kDebug : scene::Talk::kTrace;
+  scene::Verbosity verbosity() const {
+    if (quiet) return scene::Verbosity::kQuiet;
+    return more == 0   ? scene::Verbosity::kNormal
+           : more == 1 ? scene::Verbosity::kDebug
+                       : scene::Verbosity::kTrace;
   }
 };
 
@@ -33,14 +35,13 @@ void fall_through(CLI::App& above) {
 void add_log_options(CLI::App& program, const std::string& command_line) {
   auto options = std::make_shared<LogOptions>();
   program.add_flag("-v,--verbose", options->more,
-                   "Print what happens on the terminal; -vv: all of it");
+                   "Print the log on the terminal; -vv: every event");
   program.add_flag("-q,--quiet", options->quiet, "Print errors only")->excludes("--verbose");
-  program.add_option("--log", options->file,
-                     "File to log to, in place of thimble/log/thimble.log in $XDG_STATE_HOME "
-                     "(~/.local/state), which rotates");
+  program.add_option("--log", options->file, "Log file (default: see `thimble doctor`)")
+      ->option_text("FILE");
   fall_through(program);
   program.parse_complete_callback([options, command_line] {
-    const auto begun = scene::begin_log({.talk = options->talk(),
+    const auto begun = scene::begin_log({.verbosity = options->verbosity(),
                                          .file = options->file,
                                          .heading = scene::program_name() + ": " + command_line});
     if (!begun) throw CLI::ValidationError("--log", begun.error().message);

@@ -7,7 +7,7 @@ int main(int argc, char** argv) {
   using namespace thimble::cli;
   return run_program(argc, argv,
                      {.name = "thimble",
-                      .about = "touch virtual objects by a force-feedback arm",
+                      .about = "feel virtual objects through a force-feedback arm",
                       .commands = {
 #define THIMBLE_COMMAND(function, part, name, about) add_##function##_command,
 #define THIMBLE_SUBCOMMAND(function, part, name, about)

@@ -1,4 +1,4 @@
-// Reads where an arm is, without any force: what every new arm is tried with first.
+// Reads the position of an arm without any force: the first test of every new arm.
 #include <cstdio>
 
 #include "thimble/scene/simulated_device.h"
@@ -8,8 +8,8 @@ using thimble::driver::ForceCommand;
 using thimble::driver::TickRecord;
 
 int main() {
-  // A simulated arm; the world's origin is where its tip is at home, x points to the user, z up.
-  // The hand goes 20 mm to the user and back (s; m).
+  // A simulated arm. The origin of the world is its tip at the home pose; x points to the user, z
+  // up. The hand moves 20 mm towards the user and back (s; m).
   auto opened = thimble::scene::SimulatedDevice::open(
       "vintage_phantom", {{0.0, {0, 0, 0}}, {0.5, {0.02, 0, 0}}, {1.0, {0, 0, 0}}});
   if (!opened) {
@@ -17,7 +17,7 @@ int main() {
     return 1;
   }
   thimble::scene::SimulatedDevice& arm = **opened;
-  // Nobody has activated the device, so that zero force is sent, whatever a law asks for.
+  // The device has not been activated, so it sends zero force, whatever the law requests.
   auto law = [](const DeviceState&) noexcept { return ForceCommand{}; };
   // In virtual time a tick may print; on a real arm it must not (see 06_record).
   auto print = [](const TickRecord& tick) noexcept {

@@ -1,4 +1,4 @@
-// A wall: the oldest force law there is, F = k x + b v, in a dozen lines.
+// A virtual wall: the simplest force law, F = k x + b v, in a dozen lines.
 #include <algorithm>
 #include <cstdio>
 
@@ -9,7 +9,7 @@ using thimble::driver::ForceCommand;
 using thimble::driver::TickRecord;
 
 int main() {
-  // The hand presses down through the wall, which stands at z = 0, to 5 mm below it.
+  // The hand presses down through the wall at z = 0, to 5 mm below it.
   auto opened = thimble::scene::SimulatedDevice::open(
       "vintage_phantom", {{0.0, {0, 0, 0.02}}, {0.5, {0, 0, -0.005}}, {1.0, {0, 0, -0.005}}});
   if (!opened) {
@@ -41,7 +41,7 @@ int main() {
     depth = tick.depth;
   };
   arm.run(1.0, wall, keep);
-  // The hand's spring (300 N/m) and the wall's share the 5 mm that the hand wants.
+  // The springs of hand (300 N/m) and wall share the 5 mm to the target of the hand.
   std::printf("The wall holds with %.2f N at a depth of %.2f mm.\n", force, depth * 1e3);
   return force > 0.5 ? 0 : 1;
 }

@@ -1,5 +1,6 @@
-// Touches a mesh of your own: load it, say how its surface feels, let the hand stroke it.
-//   03_touch_a_mesh [FILE]     a mesh as `thimble mesh` reads it, in m
+// Touches your own mesh: loads it, sets stiffness and damping of its surface, and strokes it with a
+// simulated hand.
+//   03_touch_a_mesh [FILE]     any mesh that `thimble mesh` reads, in m
 #include <algorithm>
 #include <cstdio>
 #include <string>
@@ -19,13 +20,14 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", mesh.error().message.c_str());
     return 1;
   }
-  // Put its top 1 mm over the place where the hand will stroke.
+  // Move its highest point to 1 mm above the path of the hand.
   Eigen::Vector3d top = mesh->vertices[0];
   for (const Eigen::Vector3d& p : mesh->vertices) {
     if (p.z() > top.z()) top = p;
   }
   for (Eigen::Vector3d& p : mesh->vertices) p += Eigen::Vector3d(0, 0, 0.001) - top;
-  // "offset" is smooth: normals blended over each triangle, depth below the curved surface.
+  // "offset" is smooth: normals are blended over each triangle, and depth is below the curved
+  // surface.
   auto built = render::build_object_touch(*mesh, {.tracker = render::TrackerChoice::kOffset},
                                           {.spring = {.stiffness = 800, .damping = 1}});
   if (!built) {
@@ -45,16 +47,16 @@ int main(int argc, char** argv) {
   if (!arm.device().activate()) return 1;
   auto law = [&](const DeviceState& state) noexcept { return object.update(state); };
   int touching = 0, last = -1, triangles = 0;
-  double most = 0;
+  double max_force = 0;
   auto watch = [&](const TickRecord& tick) noexcept {
     if (!tick.in_contact) return;
     ++touching;
     triangles += tick.feature != last;
     last = tick.feature;
-    most = std::max(most, Eigen::Map<const Eigen::Vector3d>(tick.f_sent_W.data()).norm());
+    max_force = std::max(max_force, Eigen::Map<const Eigen::Vector3d>(tick.f_sent_W.data()).norm());
   };
   arm.run(1.5, law, watch);
   std::printf("%zu triangles; touched for %d ms over %d of them, at most %.2f N.\n",
-              mesh->triangles.size(), touching, triangles, most);
+              mesh->triangles.size(), touching, triangles, max_force);
   return touching > 0 ? 0 : 1;
 }

@@ -1,4 +1,4 @@
-// Gives a surface an effect of your own: one class with `touch` and `leave`.
+// Adds your own effect to a surface: one class with `touch` and `leave`.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -12,7 +12,7 @@ using thimble::driver::DeviceState;
 using thimble::driver::TickRecord;
 namespace render = thimble::render;
 
-/// Hums under the finger: the depth oscillates in time, however still the hand is.
+/// Vibration under the finger: the depth oscillates in time, also while the hand is at rest.
 class Hum {
  public:
   static constexpr std::string_view kGroup = "texture";
@@ -23,14 +23,13 @@ class Hum {
     double amplitude = 2e-4;  // m
     double frequency = 100;   // Hz
     void read(render::SettingsReader& reader, const render::EffectContext&) {
-      reader.number("amplitude", amplitude, {.unit = "m", .least = 0, .most = 0.001});
-      reader.number("frequency", frequency, {.unit = "Hz", .least = 1, .most = 400});
+      reader.number("amplitude", amplitude, {.unit = "m", .min = 0, .max = 0.001});
+      reader.number("frequency", frequency, {.unit = "Hz", .min = 1, .max = 400});
     }
   };
   Hum(const Settings& settings, const render::EffectContext&) : settings_(settings) {}
 
-  // Runs in every tick of contact, before the surface's spring; the depth it leaves is what is
-  // felt.
+  // Called in every tick of contact, before the surface's spring, which uses the resulting depth.
   void touch(const DeviceState& state, render::SurfaceResponse& response) noexcept {
     time_ += state.dt;
     const double phase = 2 * std::numbers::pi * settings_.frequency * time_;
@@ -49,7 +48,7 @@ int main() {
     std::fprintf(stderr, "%s\n", mesh.error().message.c_str());
     return 1;
   }
-  for (Eigen::Vector3d& p : mesh->vertices) p.z() -= 0.03;  // its top at the origin
+  for (Eigen::Vector3d& p : mesh->vertices) p.z() -= 0.03;  // moves its top to the origin
   static constexpr render::EffectKind kHum = render::effect_kind<Hum>();
   const render::EffectPlan hum{&kHum, []() -> std::unique_ptr<render::AnyStage> {
                                  return std::make_unique<render::AnyStageOf<Hum>>(Hum({}, {}));
@@ -69,13 +68,14 @@ int main() {
   thimble::scene::SimulatedDevice& arm = **opened;
   if (!arm.device().activate()) return 1;
   auto law = [&](const DeviceState& state) noexcept { return (*object)->update(state); };
-  double least = 1e9, most = 0;
+  double min_force = 1e9, max_force = 0;
   auto watch = [&](const TickRecord& tick) noexcept {
-    if (tick.tick < 800) return;  // the hand holds still from here on
-    least = std::min(least, tick.f_sent_W[2]);
-    most = std::max(most, tick.f_sent_W[2]);
+    if (tick.tick < 800) return;  // from then on the hand is at rest
+    min_force = std::min(min_force, tick.f_sent_W[2]);
+    max_force = std::max(max_force, tick.f_sent_W[2]);
   };
   arm.run(1.0, law, watch);
-  std::printf("The hand holds still, and the force hums between %.2f and %.2f N.\n", least, most);
-  return most - least > 0.1 ? 0 : 1;
+  std::printf("The hand is at rest, and the force oscillates between %.2f and %.2f N.\n", min_force,
+              max_force);
+  return max_force - min_force > 0.1 ? 0 : 1;
 }

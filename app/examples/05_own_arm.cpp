@@ -1,5 +1,5 @@
-// Drives an arm that Thimble does not know: say how its bytes and its geometry are, and the driver,
-// its gate and its loop do the rest. The arm here is a gantry of three rails on a serial line.
+// Drives an arm that Thimble does not know. You define its messages and its geometry; driver, gate
+// and loop do the rest. The example is a gantry of three rails on a serial line.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -13,11 +13,10 @@
 
 namespace driver = thimble::driver;
 
-/// The wire: three counts in, three motor values out, little-endian.
+/// Protocol: three counts in, three motor currents out, little-endian.
 struct GantryWire {
   static bool decode(std::span<const std::byte> report, driver::ArmReading& reading) noexcept {
-    if (report.size() != sizeof reading.counts)
-      return false;  // any bytes are understood or refused
+    if (report.size() != sizeof reading.counts) return false;  // bytes of another size are rejected
     std::memcpy(reading.counts.data(), report.data(), report.size());
     return true;
   }
@@ -28,9 +27,9 @@ struct GantryWire {
   }
 };
 
-/// The geometry: each motor's pulley moves one rail.
+/// Geometry: the pulley of each motor moves one rail.
 struct Gantry {
-  double radius = 0.01;  // m, of the pulleys
+  double radius = 0.01;  // radius of the pulleys, m
   void forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
                Eigen::Matrix3d& J_BT) const noexcept {
     p_BT = radius * q;
@@ -38,7 +37,7 @@ struct Gantry {
   }
 };
 
-/// Stands in for the serial line: a hand moves the gantry up and down, and feels the motors.
+/// Simulated serial line: a hand moves the gantry up and down, and the largest current is stored.
 class Line final : public driver::Transport {
  public:
   explicit Line(const driver::Clock& clock) : clock_(clock) {}
@@ -51,15 +50,15 @@ class Line final : public driver::Transport {
   }
   driver::TransportStatus write(std::span<const std::byte> report) noexcept override {
     std::memcpy(mA_.data(), report.data(), sizeof mA_);
-    most_mA_ = std::max<int>(most_mA_, mA_[2]);
+    max_mA_ = std::max<int>(max_mA_, mA_[2]);
     return driver::TransportStatus::kOk;
   }
-  int most_mA() const { return most_mA_; }
+  int max_mA() const { return max_mA_; }
 
  private:
   const driver::Clock& clock_;
   std::array<std::int16_t, 3> mA_{};
-  int most_mA_ = 0;
+  int max_mA_ = 0;
 };
 
 int main() {
@@ -89,11 +88,11 @@ int main() {
     if (state.p_WT.z() < 0) command.f_T_W.z() = -500 * state.p_WT.z();
     return command;
   };
-  auto nobody = [](const driver::TickRecord&) noexcept {};
+  auto ignore_ticks = [](const driver::TickRecord&) noexcept {};
   const std::atomic<bool> stop{false};
-  driver::run_servo(**device, clock, driver::ForceLaw(wall), driver::TickSink(nobody),
+  driver::run_servo(**device, clock, driver::ForceLaw(wall), driver::TickSink(ignore_ticks),
                     {.period_ns = 1'000'000, .ticks = 2000}, stop);
-  // 6.28 mm deep at 500 N/m are 3.14 N, of which the gate lets 3 N through: 30 mN m, 1.5 A.
-  std::printf("The gantry's motor got at most %d mA.\n", seen.most_mA());
-  return seen.most_mA() == 1500 ? 0 : 1;
+  // A depth of 6.28 mm at 500 N/m gives 3.14 N. The gate limits it to 3 N: 30 mN m, 1.5 A.
+  std::printf("Largest current of the gantry's motor: %d mA.\n", seen.max_mA());
+  return seen.max_mA() == 1500 ? 0 : 1;
 }

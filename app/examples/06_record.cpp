@@ -1,5 +1,6 @@
-// Records every tick without disturbing one: the servo puts it into a ring, another thread writes.
-//   06_record [FILE]     a table (CSV) that any program reads
+// Records every tick without delaying the loop: the servo thread stores ticks in a ring buffer, and
+// another thread writes them.
+//   06_record [FILE]     writes a table (CSV)
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -13,7 +14,8 @@ using thimble::driver::DeviceState;
 using thimble::driver::ForceCommand;
 using thimble::driver::TickRecord;
 
-/// Takes ticks from one thread and gives them to another; neither waits. Full, it drops and counts.
+/// Ring buffer from one thread to another; neither waits. If it is full, ticks are dropped and
+/// counted.
 class TickRing {
  public:
   void put(const TickRecord& tick) noexcept {

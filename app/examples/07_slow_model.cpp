@@ -1,5 +1,5 @@
-// Feels a simulation that is far too slow for the servo: a thread of 60 Hz publishes what the tip
-// feels near where it is, and the servo evaluates that 1000 times a second.
+// Renders a simulation that is far too slow for the servo loop. A thread at 60 Hz publishes a local
+// model of the force around the tip, which the servo loop evaluates 1000 times per second.
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -16,14 +16,14 @@ using thimble::driver::Snapshot;
 using thimble::driver::TickRecord;
 namespace render = thimble::render;
 
-/// Stands in for a finite-element body: a pad that gets stiffer the deeper it is pressed. It takes
-/// its time, and it may only be asked at one place at a time.
+/// Example of a slow model, such as a finite-element body: a pad whose stiffness grows with the
+/// depth. One call takes 10 ms and computes the force at one point.
 render::LocalModel simulate(const TickRecord& tick) {
   std::this_thread::sleep_for(std::chrono::milliseconds(10));
   const Eigen::Vector3d p_WT = Eigen::Map<const Eigen::Vector3d>(tick.p_WT.data());
-  const double depth = -p_WT.z();  // the pad's top lies at z = 0
+  const double depth = -p_WT.z();  // the top of the pad is at z = 0
   render::LocalModel model;
-  model.time_ns = tick.time_ns;  // of the state it is computed for
+  model.time_ns = tick.time_ns;  // time of the state that it is computed for
   model.n_W = {0, 0, 1};
   model.damping = 0.5;  // N s/m
   double stiffness = 200;
@@ -32,7 +32,7 @@ render::LocalModel simulate(const TickRecord& tick) {
     model.f_T_W = {0, 0, 200 * depth + 5e4 * depth * depth};
     stiffness = 200 + 1e5 * depth;  // -df/dz
   } else {
-    // The tip is free: tell of the surface that it would meet.
+    // The tip is free: return the surface that it would touch.
     model.p_WR = {p_WT.x(), p_WT.y(), 0};
   }
   model.stiffness(2, 2) = stiffness;
@@ -48,9 +48,9 @@ int main() {
   }
   thimble::scene::SimulatedDevice& arm = **opened;
   if (!arm.device().activate()) return 1;
-  Snapshot<TickRecord> tip;  // the servo shows where the tip is ...
-  render::ModelSlot slot;    // ... and finds here what it feels
-  // What arm, loop and hand carry: (b + B) / L = 3 N s/m / 1.5 ms, and a margin.
+  Snapshot<TickRecord> tip;  // state of the tip, written by the servo thread
+  render::ModelSlot slot;    // latest local model, read by the servo thread
+  // Stable with this arm, loop and hand: (b + B) / L = 3 N s/m / 1.5 ms, less a margin.
   auto made = render::ModelTouch::make(slot, {.stiffness_max = 1400});
   if (!made) {
     std::fprintf(stderr, "%s\n", made.error().message.c_str());
@@ -77,7 +77,8 @@ int main() {
     tip.store(tick);
     force = tick.f_sent_W[2];
     depth = -tick.p_WT[2];
-    // Virtual time runs ahead of any thread; a real arm's would not. So it waits a little here.
+    // Virtual time would run ahead of the other thread, unlike the time of a real arm, so it waits
+    // here.
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   };
   arm.run(2.0, law, show);

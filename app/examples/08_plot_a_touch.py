@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Touch a scene from Python, and draw what the hand felt. Packages: python3-thimble, python3-matplotlib.
+"""Runs a scene from Python and plots the force on the hand. Packages: python3-thimble, python3-matplotlib.
 
-    python3 08_plot_a_touch.py [PICTURE]        writes touch.png if no other name is given
+    python3 08_plot_a_touch.py [PICTURE]        default: touch.png
 
-The parts between the lines of "# %%" are cells for those who work in a notebook.
+The lines "# %%" separate cells for notebook editors.
 """
 
 # %% Touch a ball of rubber, then the same ball at half the stiffness by a custom force law. The law may be any
@@ -22,10 +22,10 @@ print(touch.summary())
 force = np.linalg.norm(touch.force, axis=1)
 softer_force = np.linalg.norm(softer.force, axis=1)
 beginnings = np.flatnonzero(np.diff(touch.in_contact.astype(int)) == 1)
-print(f"Contacts: {len(beginnings)}; {force.max():.2f} N at most, {1e3 * touch.depth.max():.2f} mm deep.")
-print(f"Half the force lets the hand {1e3 * softer.depth.max():.2f} mm deep.")
+print(f"Contacts: {len(beginnings)}; largest force {force.max():.2f} N, largest depth {1e3 * touch.depth.max():.2f} mm.")
+print(f"Largest depth with half the force: {1e3 * softer.depth.max():.2f} mm.")
 
-# %% Drawn if matplotlib is installed.
+# %% The plot needs matplotlib.
 try:
     import matplotlib
 
@@ -38,7 +38,7 @@ blue, orange, grey = "#1f5fa8", "#d9822b", "#8a8a8a"
 figure, (over_time, over_depth) = pyplot.subplots(
     1, 2, figsize=(11, 4.2), width_ratios=(2, 1), layout="constrained"
 )
-over_time.plot(touch.time, force, color=blue, linewidth=1, label="as the scene says")
+over_time.plot(touch.time, force, color=blue, linewidth=1, label="scene")
 over_time.plot(softer.time, softer_force, color=orange, linewidth=1, label="half the force")
 over_time.fill_between(
     touch.time, 0, 1, where=touch.in_contact, transform=over_time.get_xaxis_transform(),
@@ -58,4 +58,4 @@ for axes in (over_time, over_depth):
 
 picture = sys.argv[1] if len(sys.argv) > 1 else "touch.png"
 figure.savefig(picture, dpi=110)
-print(f"Drawn: {picture}")
+print(f"Plot: {picture}")

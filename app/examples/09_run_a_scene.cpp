@@ -1,5 +1,5 @@
-// Runs a scene that is known by name, with half of its force; prints what was felt, records every
-// tick, and lets the recorded hand touch the scene once more.
+// Runs a scene with half of its force, prints a summary, records every tick, and replays the
+// recorded motion of the hand on the scene.
 //   09_run_a_scene [SCENE] [FILE.h5]     a name or a path
 #include <cstdio>
 
@@ -16,28 +16,28 @@ int complain(const driver::Error& error) {
 
 int main(int argc, char** argv) {
   const char* file = argc > 2 ? argv[2] : "touch.h5";
-  // Without `overwrite` an existing recording is kept, and this is an error.
+  // Without `overwrite` an existing recording is kept, and `open` fails.
   auto run =
       session::Session::open(argc > 1 ? argv[1] : "rubber", {.record = file, .overwrite = true});
   if (!run) return complain(run.error());
   session::Session& touch = **run;
-  // A law of one's own, asked in each tick of virtual time. Without it the scene's own force is
-  // felt.
+  // Custom force law, called in each tick of virtual time. Without it the scene's own force is
+  // used.
   auto softer = [&](const driver::DeviceState& state) noexcept {
     driver::ForceCommand command = touch.touch()(state);
     command.f_T_W *= 0.5;
     return command;
   };
   if (auto set = touch.set_law(driver::ForceLaw(softer)); !set) return complain(set.error());
-  touch.run();  // or `step`, tick by tick
+  touch.run();  // or `step` for single ticks
   std::printf("%s", summary(touch.figures()).c_str());
   if (auto ended = touch.end_recording(); !ended) return complain(ended.error());
 
   auto recording = session::read_recording(file);
   if (!recording) return complain(recording.error());
-  auto again = session::replay(*recording);  // by the scene's own law
+  auto again = session::replay(*recording);  // with the scene's own law
   if (!again) return complain(again.error());
-  std::printf("Replayed: %zu ticks, %.2f N of difference at most.\n", again->felt.ticks.size(),
+  std::printf("Replayed: %zu ticks, largest difference %.2f N.\n", again->felt.ticks.size(),
               again->compared.largest);
   return again->compared.largest > 0.1 ? 0 : 1;
 }

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""How much rougher must a texture be to be told from another? An experiment, here with a simulated subject.
+"""Measures by how much two textures must differ in roughness to be distinguished, here with a simulated subject.
 
-    python3 10_texture_discrimination.py [FOLDER]       logs go to FOLDER, the present one if not named
+    python3 10_texture_discrimination.py [FOLDER]       FOLDER: of the logs; default: the working folder
 
-Each trial strokes two pieces of sandpaper, the standard and a rougher comparison, in an order by chance, and asks
-which one was rougher. A staircase looks for the comparison that is told in 79 % of trials; constant stimuli give the
-whole curve, with the point of equality and the just noticeable difference (JND). Ended in the middle, it goes on with
-the next trial when it is run again. For people in front of a real arm, let `feels` open one (thimble.open) and ask them.
+Each trial strokes two pieces of sandpaper in random order, the standard and a rougher comparison, and asks which one
+was rougher. A staircase finds the comparison that is identified in 79 % of trials. Constant stimuli give the whole
+psychometric curve, with the point of subjective equality and the just noticeable difference (JND). After an
+interruption, another call continues with the next trial. For human subjects, let `feels` open a real arm
+(thimble.open) and ask them.
 """
 
 import sys
@@ -18,7 +19,7 @@ import thimble
 from thimble import experiment
 
 STANDARD = 20e-6  # m, RMS height of the standard
-NOISE = 0.1  # of the simulated subject: relative scatter of its roughness estimate
+NOISE = 0.1  # relative standard deviation of the roughness estimate of the simulated subject
 
 # A hand strokes 20 mm of a block of sandpaper in 0.4 s.
 SANDPAPER = {
@@ -32,23 +33,23 @@ SANDPAPER = {
 
 
 def stroke(roughness, random):
-    """Strokes a piece of its own with a tremor of its own; what is felt is the RMS of the force's quick part, N."""
+    """Strokes a new piece of sandpaper with a new tremor. Returns the RMS of the force above 20 Hz, N."""
     piece, tremor = random.integers(1, 10_000, size=2).tolist()
     changes = {"strip.effects.texture.roughness": roughness, "strip.effects.texture.seed": piece}
     touch = thimble.run(SANDPAPER, set=changes, seed=tremor)
     force = touch.force[touch.time > 0.35, 2]
-    quick = force - np.convolve(force, np.ones(51) / 51, mode="same")  # without frequencies below 20 Hz
+    quick = force - np.convolve(force, np.ones(51) / 51, mode="same")  # removes frequencies below 20 Hz
     return float(np.sqrt(np.mean(quick[25:-25] ** 2)))
 
 
 def feels(roughness, random):
-    """What the simulated subject makes of a stroke."""
+    """Returns the roughness that the simulated subject perceives in a stroke, N."""
     rms = stroke(roughness, random)
     return rms * (1 + NOISE * random.normal())
 
 
 def present(trial):
-    """Strokes standard and comparison in an order by chance; the answer says which of them seemed rougher."""
+    """Strokes standard and comparison in random order. Returns which of them seemed rougher."""
     comparison = trial.condition["level"] * STANDARD
     standard_first = bool(trial.random.integers(2))
     first = feels(STANDARD if standard_first else comparison, trial.random)
@@ -61,14 +62,14 @@ def main(folder):
     staircase = experiment.Staircase(1.8, [1.2, 1.1, 1.05], multiply=True, down=3, lowest=1.0, reversals=12, last=8)
     with experiment.Session(folder / "staircase.jsonl", staircase, seed=1, about={"subject": "simulated"}) as session:
         if session.resumed:
-            print(f"Goes on after {session.resumed} trials.")
+            print(f"Continues after {session.resumed} trials.")
         session.run(present)
     print(
-        f"Staircase: {len(staircase.levels)} trials; told in {100 * staircase.target:.0f} % at "
+        f"Staircase: {len(staircase.levels)} trials; identified in {100 * staircase.target:.0f} % at "
         f"{staircase.threshold:.3f} of the standard."
     )
 
-    stimuli = experiment.ConstantStimuli(np.linspace(0.4, 1.6, 7), 16, says="rougher", seed=2)
+    stimuli = experiment.ConstantStimuli(np.linspace(0.4, 1.6, 7), 16, answer_key="rougher", seed=2)
     with experiment.Session(folder / "constant.jsonl", stimuli, seed=2, about={"subject": "simulated"}) as session:
         session.run(present)
     curve = stimuli.fit(shape="probit")

@@ -1,6 +1,6 @@
 # Doxygen's view of a header: members whose name means the same wherever it stands, because templates
 # ask for it by that name, get their sentence here instead of one in every class; what is only
-# defaulted or deleted is not told. Lines keep their numbers.
+# defaulted or deleted has no sentence. Lines keep their numbers.
 #
 # know(NAME, SENTENCE): of members (functions if NAME ends in a bracket) that have no words of their own,
 # in the headers that `where` names.

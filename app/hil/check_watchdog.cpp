@@ -22,7 +22,7 @@ HilResult check_watchdog_time(const HilRig& rig) {
   auto opened = open_active(rig, TipHold::kFree);
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
   bringup::BenchArm& bench = **opened;
-  const bringup::WatchdogSeen seen = bringup::see_watchdog(bench, order, 1, rig.stop);
+  const bringup::WatchdogPush seen = bringup::observe_watchdog(bench, order, 1, rig.stop);
   switch (seen.end) {
     case bringup::WatchdogEnd::kStopped:
       break;
@@ -31,11 +31,11 @@ HilResult check_watchdog_time(const HilRig& rig) {
           kName,
           fmt::format("A watchdog of {:.0f} ms cannot be measured on a free tip within {:.0f} mm. "
                       "The feel check measures it with a hand on the grip (--attended).",
-                      1e3 * order.named, 1e3 * bringup::kWatchdogWayMost));
+                      1e3 * order.named, 1e3 * bringup::kWatchdogWayMax));
     case bringup::WatchdogEnd::kNoRoom:
       return skipped(kName, fmt::format("The tip is too close to a side of the workspace for a "
                                         "push of {:.0f} mm. Move it to the middle.",
-                                        1e3 * bringup::kWatchdogWayMost));
+                                        1e3 * bringup::kWatchdogWayMax));
     case bringup::WatchdogEnd::kTooMuch:
       return skipped(
           kName,

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "bringup/identify/identify.h"
-#include "bringup/identify/link_inertia/place_masses.h"
+#include "bringup/identify/link_inertia/masses_per_pose.h"
 
 namespace thimble::hil {
 namespace {
@@ -37,8 +37,8 @@ std::string add_tilt(const bringup::Identified& found, double known_mass,
                      const Eigen::Vector3d& down_B, std::vector<session::Figure>& figures) {
   constexpr double kWeightSeen = 0.02;  // N
   const double mass = found.constants.mass.value;
-  const auto pull = [&](const bringup::PerMass& fit, double moved) -> Eigen::Vector3d {
-    return moved * fit.theta.segment<3>(bringup::PerMass::kWeight);
+  const auto pull = [&](const bringup::MassNormalisedFit& fit, double moved) -> Eigen::Vector3d {
+    return moved * fit.theta.segment<3>(bringup::MassNormalisedFit::kWeight);
   };
   Eigen::Vector3d weight_B = pull(found.bare, mass);
   if (found.loaded) weight_B = pull(*found.loaded, mass + known_mass) - weight_B;
@@ -73,7 +73,7 @@ std::string add_masses(const bringup::LinkFit& found, const scene::ArmFile& file
 }  // namespace
 
 HilResult check_constants(const HilRig& rig, const HilOptions& suite) {
-  if (rig.file.is<driver::DeltaArm>() || rig.file.is<driver::ToldArm>()) {
+  if (rig.file.is<driver::DeltaArm>() || rig.file.is<driver::VendorPoseArm>()) {
     return skipped(kName, "Arms of this geometry cannot be identified yet.");
   }
   if (suite.known_mass > 0 && !rig.attended) {

@@ -14,34 +14,34 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTick = 1e-3;         // s, of BenchArm
-constexpr double kForceMost = 0.95;    // N, below kHilForceMax
-constexpr double kKickForce = 0.6;     // N [chosen]
-constexpr double kSettle = 0.4;        // s
-constexpr double kWatchedLeast = 0.6;  // s
-constexpr double kWindowLeast = 0.1;   // s, at the beginning and at the end
-constexpr double kFar = 0.006;         // m
-constexpr double kEnergyTimes = 10;    // max. ratio of the energy from a wall to that of the kick
-constexpr double kCountsAtRest = 3;    // counts; max. flicker of the encoders at rest
-constexpr double kMassUnknown = 0.1;   // kg, if the file names none [chosen]
+constexpr double kTick = 1e-3;        // s, of BenchArm
+constexpr double kForceMax = 0.95;    // N, below kHilForceMax
+constexpr double kKickForce = 0.6;    // N [chosen]
+constexpr double kSettle = 0.4;       // s
+constexpr double kWatchedMin = 0.6;   // s
+constexpr double kWindowMin = 0.1;    // s, at the beginning and at the end
+constexpr double kFar = 0.006;        // m
+constexpr double kEnergyTimes = 10;   // max. ratio of the energy from a wall to that of the kick
+constexpr double kCountsAtRest = 3;   // counts; max. flicker of the encoders at rest
+constexpr double kMassUnknown = 0.1;  // kg, if the file names none [chosen]
 
 /// Width of an oscillation: a tip that dry friction holds away from the wall's position has no
 /// width.
 struct Oscillation {
-  double least = HUGE_VAL, most = -HUGE_VAL;
+  double lowest = HUGE_VAL, highest = -HUGE_VAL;
 
   void add(double x) {
-    least = std::min(least, x);
-    most = std::max(most, x);
+    lowest = std::min(lowest, x);
+    highest = std::max(highest, x);
   }
-  double width() const { return std::max(0.0, most - least); }
+  double width() const { return std::max(0.0, highest - lowest); }
 };
 
 /// One of the starts. Any number of them is spread evenly, by multiples of the golden section and
 /// of roots.
 struct Start {
   double speed;   // m/s
-  double beside;  // of the wall from the tip, m
+  double offset;  // of the wall from the tip, m
   double dither;  // of the first stiffness of its search, as a share of a fine step, -0.5 to 0.5
 
   Start(int number, const EdgeSearch& search, double step) {
@@ -50,7 +50,7 @@ struct Start {
       return at - std::floor(at) - 0.5;
     };
     speed = search.speed * (1 + search.speed_span * spread(std::numbers::sqrt2));
-    beside = step * spread(std::numbers::phi - 1);
+    offset = step * spread(std::numbers::phi - 1);
     dither = spread(std::numbers::sqrt3);
   }
 };
@@ -64,8 +64,8 @@ class Trial {
     kick_ = kTick * std::max(1.0, std::ceil(mass * start.speed / kKickForce / kTick));
     kick_force_ = mass * start.speed / kick_;
     const double period = 2 * std::numbers::pi * std::sqrt(mass / stiffness);
-    window_ = std::max(kWindowLeast, 1.2 * period);
-    watched_ = std::max(kWatchedLeast, 4 * window_);
+    window_ = std::max(kWindowMin, 1.2 * period);
+    watched_ = std::max(kWatchedMin, 4 * window_);
   }
 
   Vector3d force(const driver::DeviceState& state, const Vector3d& f_sent_W, double time) {
@@ -80,7 +80,7 @@ class Trial {
     }
     if (!walled_) {
       walled_ = true;
-      place_ = state.p_WT[axis_] + start_.beside;
+      place_ = state.p_WT[axis_] + start_.offset;
       given_ = 0;
     } else {
       given_ += f_sent_W.dot(way);
@@ -89,7 +89,7 @@ class Trial {
     const double since = time - kSettle - kick_;
     if (since < window_) first_.add(away);
     if (since > watched_ - window_) last_.add(away);
-    given_most_ = std::max(given_most_, given_);
+    max_energy_given_ = std::max(max_energy_given_, given_);
     // Written so that NaN counts as growing.
     const bool tame =
         given_ < kEnergyTimes * 0.5 * mass_ * start_.speed * start_.speed && std::abs(away) < kFar;
@@ -106,12 +106,12 @@ class Trial {
   bool grew(double step) const {
     return grew_ || (last_.width() >= first_.width() && last_.width() > kCountsAtRest * step);
   }
-  double given_most() const { return given_most_; }
+  double max_energy_given() const { return max_energy_given_; }
 
  private:
   static Vector3d shortened(const Vector3d& f_W) {
     const double length = f_W.norm();
-    return length > kForceMost ? Vector3d(f_W * (kForceMost / length)) : f_W;
+    return length > kForceMax ? Vector3d(f_W * (kForceMax / length)) : f_W;
   }
 
   int axis_;
@@ -121,10 +121,10 @@ class Trial {
   double kick_ = 0, window_ = 0, watched_ = 0;  // s
   bringup::HoldPlace hold_;
   bool walled_ = false, over_ = false, grew_ = false;
-  double place_ = 0;          // of the wall along the axis, m
-  double given_ = 0;          // J
-  double given_most_ = 0;     // J
-  Oscillation first_, last_;  // in the first and in the last window
+  double place_ = 0;             // of the wall along the axis, m
+  double given_ = 0;             // J
+  double max_energy_given_ = 0;  // J
+  Oscillation first_, last_;     // in the first and in the last window
   Vector3d p_last_W_{0, 0, 0};
 };
 
@@ -202,12 +202,12 @@ class Search {
     const double begin = bench_.now();
     const auto law = [&](const driver::DeviceState& state) -> Vector3d {
       const Vector3d& f_sent_W = bench_.device().f_sent_W();
-      edge_.force_most = std::max(edge_.force_most, f_sent_W.norm());
+      edge_.max_force = std::max(edge_.max_force, f_sent_W.norm());
       return trial.force(state, f_sent_W, bench_.now() - begin);
     };
     if (!bench_.run(trial.duration(), law, stop_)) return ended(bench_);
     ++edge_.walls;
-    edge_.given_most = std::max(edge_.given_most, trial.given_most());
+    edge_.max_energy_given = std::max(edge_.max_energy_given, trial.max_energy_given());
     if (!((bench_.device().state().p_WT - p_start_W_).norm() < 5 * kFar)) {
       return driver::Error{
           "The tip does not stay where it is released, so no more walls were tested. Put the arm "

@@ -28,10 +28,10 @@ struct EdgeOfWall {
   /// next, which grew, N/m.
   MedianInterval stiffness;
   std::vector<double> at_start;  ///< Edge from each start, in order, N/m.
-  bool grew = false;      ///< The search reached the edge; else it ended at its last stiffness.
-  double given_most = 0;  ///< Max. energy that a wall gave the tip, J.
-  double force_most = 0;  ///< Max. force sent, N.
-  int walls = 0;          ///< Number of walls tried.
+  bool grew = false;  ///< The search reached the edge; else it ended at its last stiffness.
+  double max_energy_given = 0;  ///< Max. energy that a wall gave the tip, J.
+  double max_force = 0;         ///< Max. force sent, N.
+  int walls = 0;                ///< Number of walls tried.
 };
 
 /// Raises the stiffness of a wall in coarse steps until the first that grows, which is removed at

@@ -71,8 +71,9 @@ HilResult check_friction_at_rest(const HilRig& rig) {
   const auto listened = static_cast<std::size_t>(kListened * kRate);
   const std::vector<double> fast = stability::high_passed(sent, kRate, kCorner);
   const double loud = stability::root_mean_square(std::span(fast).last(listened));
-  const auto [least, most] = std::minmax_element(x.end() - static_cast<long>(listened), x.end());
-  const double moved = *most - *least;
+  const auto [lowest, highest] =
+      std::minmax_element(x.end() - static_cast<long>(listened), x.end());
+  const double moved = *highest - *lowest;
   return judged(
       kName,
       fmt::format("After {:.1f} mm of sliding and a stop, the force above {:g} Hz is {:.2f} mN RMS "

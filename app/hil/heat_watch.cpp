@@ -11,14 +11,14 @@ namespace {
 using driver::HeatGuard;
 
 // Both sources use the same integer mA over the same times: only rounding errors differ.
-constexpr double kApartMost = 1e-4;       // of the limit
+constexpr double kApartMax = 1e-4;        // of the limit
 constexpr double kHeatSlack = 1e-3;       // of the limit: how much colder a motor may be counted
 constexpr double kCurrentSlack = 0.0005;  // A: a message holds integer mA
 // Min. heat for a comparison: colder windings show delays, not constants.
 constexpr double kComparedFrom = 0.002;  // of the limit
 // A winding is never warmer than the driver's estimate if the file is correct (motor_heat.h); a
 // late message makes it so for a moment.
-constexpr double kRatioMost = 1.02;
+constexpr double kRatioMax = 1.02;
 
 }  // namespace
 
@@ -72,8 +72,8 @@ void HeatWatch::tick(const driver::DeviceState& state) {
   hottest_ = std::max(hottest_, thought.maxCoeff());
   apart_ = std::max(apart_, (thought - model_).abs().maxCoeff());
   const Array amperes = currents();
-  const Array most = allowed(model_ - kHeatSlack) + kCurrentSlack;
-  over_ = std::max(over_, (amperes / most).maxCoeff());
+  const Array max_currents = allowed(model_ - kHeatSlack) + kCurrentSlack;
+  over_ = std::max(over_, (amperes / max_currents).maxCoeff());
   const Array load = (amperes / continuous_).square();
   load_ += state.dt * load;
   time_ += state.dt;
@@ -88,7 +88,7 @@ void HeatWatch::compare_windings(const Array& thought) {
   const double limit = file_.simulated.drive_train.heat.rise;  // K
   if (!rise || !(limit > 0)) return;
   const Array winding = rise->array() / limit;
-  winding_most_ = std::max(winding_most_, winding.maxCoeff());
+  max_winding_ = std::max(max_winding_, winding.maxCoeff());
   for (int i = 0; i < 3; ++i) {
     if (std::max(winding[i], thought[i]) < kComparedFrom) continue;
     const double ratio = winding[i] / std::max(thought[i], kComparedFrom);
@@ -104,7 +104,7 @@ std::vector<session::Figure> HeatWatch::figures() const {
   if (!named_) return {};
   std::vector<session::Figure> figures{
       {"motor_heat", hottest_, "of the limit", "<= 1", "by the driver's model"},
-      {"heat_from_model", apart_, "of the limit", fmt::format("<= {:g}", kApartMost),
+      {"heat_from_model", apart_, "of the limit", fmt::format("<= {:g}", kApartMax),
        "difference between the driver's heat and that of the arm file's model"},
       {"heat_in_the_end", (load_ / time_).maxCoeff(), "of the limit", "",
        "limit for an unlimited duration of this motion"},
@@ -113,8 +113,8 @@ std::vector<session::Figure> HeatWatch::figures() const {
        static_cast<double>(bench_.device().heat().lowered() - lowered_before_), "", "", ""}};
   if (winding_motor_ > 0) {
     figures.push_back(
-        {"winding_heat", winding_most_, "of the limit", "<= 1", "of the simulated motors"});
-    figures.push_back({"winding_of_thought", winding_ratio_, "", fmt::format("<= {:g}", kRatioMost),
+        {"winding_heat", max_winding_, "of the limit", "<= 1", "of the simulated motors"});
+    figures.push_back({"winding_of_thought", winding_ratio_, "", fmt::format("<= {:g}", kRatioMax),
                        "temperature rise of a winding, divided by the driver's estimate"});
   }
   return figures;
@@ -129,7 +129,7 @@ std::string HeatWatch::text() const {
       " By the driver's model the hottest motor reached {:.0f} % of its limit, and would reach "
       "{:.0f} % if this motion continued forever{}.",
       100 * hottest_, 100 * (load_ / time_).maxCoeff(),
-      apart_ <= kApartMost
+      apart_ <= kApartMax
           ? ", in agreement with the arm file's model"
           : fmt::format("; the arm file's model differs by up to {:.1f} % of the limit",
                         100 * apart_));
@@ -150,10 +150,10 @@ std::string HeatWatch::text() const {
                        : " The simulation has no motor heat (drive_train: heat), so there are no "
                          "winding temperatures to compare.");
   }
-  if (winding_ratio_ <= kRatioMost) {
+  if (winding_ratio_ <= kRatioMax) {
     return text +
            fmt::format(" The simulated windings were never warmer than that: at most {:.0f} %.",
-                       100 * winding_most_);
+                       100 * max_winding_);
   }
   return text +
          fmt::format(

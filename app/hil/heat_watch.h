@@ -50,7 +50,7 @@ class HeatWatch {
   double apart_ = 0;     // max. difference between driver and model, beyond rounding
   double over_ = 0;      // max. ratio of a current to the current that its motor's heat allows
   std::uint64_t lowered_before_;
-  double winding_most_ = 0;  // share of the limit
+  double max_winding_ = 0;  // share of the limit
   // Values where a winding was warmer than the driver's estimate by the largest ratio.
   double winding_ratio_ = 0, winding_there_ = 0, thought_there_ = 0;
   int winding_motor_ = 0;

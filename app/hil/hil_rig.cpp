@@ -58,7 +58,7 @@ std::vector<std::string> not_tested(const scene::ArmFile& file, const HilOptions
     });
   };
   std::vector<std::string> all;
-  const bool serial = !file.is<driver::DeltaArm>() && !file.is<driver::ToldArm>();
+  const bool serial = !file.is<driver::DeltaArm>() && !file.is<driver::VendorPoseArm>();
   if (!ran("known_length")) {
     all.emplace_back(
         "The scale of positions: in motion, errors of counts per turn, ratio and link length look "

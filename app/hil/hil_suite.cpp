@@ -31,7 +31,7 @@ HilResult check_reports(const HilRig& rig, double seconds) {
   for (int i = 1; i <= kOpened; ++i) {
     auto bench = rig.open(TipHold::kFree);
     if (!bench) return broken_off(kName, bench.error().message, nullptr);
-    const bringup::Listened heard = bringup::listen(**bench, seconds, rig.stop);
+    const bringup::ReportStatistics heard = bringup::listen(**bench, seconds, rig.stop);
     if (!heard.whole) return broken_off(kName, heard.text(), bench->get());
     text += (text.empty() ? "" : " ") + heard.text();
     figures.push_back({fmt::format("reports_are_good_{}", i), heard.good() ? 1.0 : 0.0, "", "== 1",
@@ -53,8 +53,10 @@ HilResult check_feel(const HilRig& rig, const HilOptions& options) {
   }
   auto bench = rig.open(TipHold::kHand);
   if (!bench) return broken_off(kName, bench.error().message, nullptr);
-  constexpr double kFelt = 0.1;  // N
-  const bringup::Question hand = [&](const std::string&) { return (*bench)->true_force() < kFelt; };
+  constexpr double kReleased = 0.1;  // N
+  const bringup::Question hand = [&](const std::string&) {
+    return (*bench)->true_force() < kReleased;
+  };
   const auto results =
       bringup::feel_check(**bench, rig.file, rig.prompt, rig.stop,
                           rig.question || !(*bench)->simulated() ? rig.question : hand);

@@ -19,7 +19,7 @@ constexpr double kHome = 0.005;                 // m [chosen: error of a careful
 constexpr double kSides = 0.003;       // m [chosen: three times the backlash of a good arm]
 constexpr double kLengthShare = 0.03;  // [chosen: 3 mm of 100 mm from mark to mark]
 constexpr double kAngle = 10;          // degrees
-constexpr double kBeside = 0.02;       // m, distance from which a simulated hand comes home
+constexpr double kApproach = 0.02;     // m, distance from which a simulated hand comes home
 
 /// Tip of an arm file when its counters are zero, m in the world.
 Vector3d home_of(const scene::ArmFile& file) {
@@ -51,7 +51,7 @@ std::optional<Vector3d> tip_after(bringup::BenchArm& bench, double seconds,
 
 HilResult check_home_pose(const HilRig& rig) {
   constexpr const char* kName = "home_pose";
-  if (rig.file.is<driver::DeltaArm>() || rig.file.is<driver::ToldArm>()) {
+  if (rig.file.is<driver::DeltaArm>() || rig.file.is<driver::VendorPoseArm>()) {
     return skipped(kName, "This arm finds its zero by itself.");
   }
   if (!rig.attended) {
@@ -73,16 +73,16 @@ HilResult check_home_pose(const HilRig& rig) {
   }
   const Vector3d home = home_of(rig.file);
   const double apart = (found[0] - found[1]).norm();
-  const double beside = std::max((found[0] - home).norm(), (found[1] - home).norm());
+  const double offset = std::max((found[0] - home).norm(), (found[1] - home).norm());
   return judged(
       kName,
       fmt::format("In the home pose the tip is {:.1f} mm from the position of the arm file; the "
                   "poses from the two sides are {:.1f} mm apart.{}",
-                  1e3 * beside, 1e3 * apart,
-                  beside > kHome ? " The arm was switched on in another pose, or home_counts or "
+                  1e3 * offset, 1e3 * apart,
+                  offset > kHome ? " The arm was switched on in another pose, or home_counts or "
                                    "the links of the arm file are wrong. Run `thimble calibrate`."
                                  : ""),
-      {{"home_beside", 1e3 * beside, "mm", fmt::format("<= {:g}", 1e3 * kHome), ""},
+      {{"home_beside", 1e3 * offset, "mm", fmt::format("<= {:g}", 1e3 * kHome), ""},
        {"home_sides_apart", 1e3 * apart, "mm", fmt::format("<= {:g}", 1e3 * kSides), ""}});
 }
 
@@ -141,8 +141,8 @@ device_sim::HandSettings firm_hand() {
 }
 
 std::vector<std::pair<double, Vector3d>> home_pose_hand(const scene::ArmFile& file) {
-  const Vector3d home = home_of(file), beside = kBeside * Vector3d(0, -1, -1).normalized();
-  return {{0, home + beside}, {1, home}, {2, home}, {2.4, home - beside}, {3, home}, {10, home}};
+  const Vector3d home = home_of(file), offset = kApproach * Vector3d(0, -1, -1).normalized();
+  return {{0, home + offset}, {1, home}, {2, home}, {2.4, home - offset}, {3, home}, {10, home}};
 }
 
 std::vector<std::pair<double, Vector3d>> known_length_hand(const scene::ArmFile& file,

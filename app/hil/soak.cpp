@@ -13,8 +13,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr const char* kName = "soak";
-constexpr double kTick = 1e-3;         // s, of BenchArm
-constexpr double kMissingMost = 0.05;  // of the ticks: possible without real-time priority
+constexpr double kTick = 1e-3;        // s, of BenchArm
+constexpr double kMissingMax = 0.05;  // of the ticks: possible without real-time priority
 
 }  // namespace
 
@@ -47,7 +47,7 @@ HilResult check_soak(const HilRig& rig, double minutes) {
   std::vector<session::Figure> figures{
       {"soak_minutes", done, "min", "", ""},
       {"tip_moved", 1e3 * moved, "mm", "> 1", "if less, the tip is held or no motor pulls"},
-      {"ticks_without_report", 100 * missing, "%", fmt::format("<= {:g}", 100 * kMissingMost), ""},
+      {"ticks_without_report", 100 * missing, "%", fmt::format("<= {:g}", 100 * kMissingMax), ""},
       {"reports_rejected", static_cast<double>(after.rejected - before.rejected), "", "== 0", ""},
       {"messages_refused", static_cast<double>(after.refused - before.refused), "", "== 0", ""},
       {"tip_left_its_place", left ? 1.0 : 0.0, "", "== 0", ""}};
@@ -55,7 +55,7 @@ HilResult check_soak(const HilRig& rig, double minutes) {
   return judged(kName,
                 fmt::format("The tip was pushed for {:.1f} minutes with up to {:g} N{}; {:.3f} % "
                             "of the ticks had no report.",
-                            done, excitation.force_most(),
+                            done, excitation.max_force(),
                             left ? ", until it left its allowed space" : "", 100 * missing) +
                     heat.text(),
                 std::move(figures));

@@ -13,12 +13,12 @@ using Eigen::Vector3d;
 
 constexpr const char* kName = "force_accuracy";
 constexpr int kAxis = 1;
-constexpr double kForceMost = 0.9;  // N
-constexpr int kSteps = 9;           // up, and as many down
-constexpr double kStep_s = 0.7;     // s, of each
-constexpr double kLooked_s = 0.2;   // s, measured part at its end
-constexpr double kDamping = 2;      // N s/m: an undamped tip oscillates for long [chosen]
-constexpr double kFar = 0.04;       // m; a longer elongation means that the spring has come off
+constexpr double kForceMax = 0.9;  // N
+constexpr int kSteps = 9;          // up, and as many down
+constexpr double kStep_s = 0.7;    // s, of each
+constexpr double kLooked_s = 0.2;  // s, measured part at its end
+constexpr double kDamping = 2;     // N s/m: an undamped tip oscillates for long [chosen]
+constexpr double kFar = 0.04;      // m; a longer elongation means that the spring has come off
 
 /// Slope and its standard error of y over x, with a separate offset for each of two groups.
 struct Slope {
@@ -56,7 +56,7 @@ HilResult check_tied_spring(const HilRig& rig, double stiffness) {
   std::vector<double> way;     // m
   for (int i = 1; i < 2 * kSteps; ++i) {
     const bool up = i <= kSteps;
-    const double asked = kForceMost * (up ? i : 2 * kSteps - i) / kSteps;
+    const double asked = kForceMax * (up ? i : 2 * kSteps - i) / kSteps;
     const double begin = bench.now();
     double sum = 0, sent = 0;
     int seen = 0;
@@ -83,7 +83,7 @@ HilResult check_tied_spring(const HilRig& rig, double stiffness) {
     // A tip follows only after dry friction has reversed: by its size after the beginning, by twice
     // that after the turn. Half more is allowed for an arm with more friction than in its file.
     const double rubs = 1.5 * rig.file.simulated.plant.coulomb;
-    if (i == kSteps || (up ? asked < rubs : asked > kForceMost - 2 * rubs)) continue;
+    if (i == kSteps || (up ? asked < rubs : asked > kForceMax - 2 * rubs)) continue;
     rows.emplace_back(sent / seen, up ? 1 : 0, up ? 0 : 1);
     way.push_back(sum / seen);
   }

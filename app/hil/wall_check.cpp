@@ -68,8 +68,8 @@ HilResult check_stiffest_wall(const HilRig& rig, bool full) {
         "upper bound of the same value"},
        {"wall_over_twin_low", ratio.low, "", "", "95 % interval"},
        {"wall_over_twin_high", ratio.high, "", "", "95 % interval"},
-       {"energy_given", 1e3 * found->given_most, "mJ", "", "by the wall that added most"},
-       {"force_most", found->force_most, "N", fmt::format("<= {:g}", kHilForceMax), ""}});
+       {"energy_given", 1e3 * found->max_energy_given, "mJ", "", "by the wall that added most"},
+       {"force_most", found->max_force, "N", fmt::format("<= {:g}", kHilForceMax), ""}});
 }
 
 }  // namespace thimble::hil

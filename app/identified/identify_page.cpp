@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "bringup/identify/constants_table.h"
-#include "bringup/identify/link_inertia/place_masses.h"
-#include "bringup/identify/not_identified.h"
+#include "bringup/identify/link_inertia/masses_per_pose.h"
+#include "bringup/identify/unidentified_parameters.h"
 #include "identified/identify_plots.h"
 #include "report/html/page_block.h"
 #include "report/inline_picture.h"
@@ -78,7 +78,7 @@ std::string masses_text(const bringup::LinkFit& fit, const scene::ArmFile& file)
   std::string text =
       "<div class=\"scroll\"><table><tr><th>place, mm (world)</th><th>along x, g</th><th>along "
       "y</th><th>along z</th></tr>\n";
-  for (const bringup::PlaceMass& place : bringup::masses_at_places(fit, file)) {
+  for (const bringup::PoseMass& place : bringup::pose_masses(fit, file)) {
     text += fmt::format("<tr><td>{:.0f}, {:.0f}, {:.0f}</td>", 1e3 * place.p_W.x(),
                         1e3 * place.p_W.y(), 1e3 * place.p_W.z());
     for (const bringup::Estimate& mass : place.mass) {
@@ -104,7 +104,7 @@ std::string page_text(const bringup::Identified& found, const scene::ArmFile& fi
                   heading.simulated
                       ? "The simulated arm of this file; the constants do not describe a real arm"
                       : "Arm " + heading.device,
-                  heading.date, heading.seconds, heading.force_most,
+                  heading.date, heading.seconds, heading.max_force,
                   heading.known_mass > 0
                       ? fmt::format(", and a second time with {:g} g fixed to the tip",
                                     1e3 * heading.known_mass)
@@ -126,7 +126,7 @@ std::string page_text(const bringup::Identified& found, const scene::ArmFile& fi
                 "gnuplot-nox) and identify again. The numbers are in data/.");
   }
   page += "<h2>Not identified</h2>\n<ul>\n";
-  for (const std::string& sentence : bringup::not_identified(found)) {
+  for (const std::string& sentence : bringup::unidentified_parameters(found)) {
     const std::size_t colon = sentence.find(':');
     page +=
         fmt::format("<li><b>{}</b>{}</li>\n", report::html_text(sentence.substr(0, colon)),

@@ -17,7 +17,7 @@ struct IdentifyHeading {
   std::string date;        ///< "2026-11-23"
   std::string program;     ///< Name and version of the program that measured.
   double seconds = 0;      ///< Duration of each motion, s.
-  double force_most = bringup::kIdentifyForceMax;  ///< Force limit of the identification, N.
+  double max_force = bringup::kIdentifyForceMax;  ///< Force limit of the identification, N.
   bool bad_fit_is_written = false;  ///< A bad fit is written to an arm file, if the user agrees.
   double known_mass = 0;            ///< Mass fixed to the tip for the second motion, kg; 0: none.
 };

@@ -40,9 +40,10 @@ std::string stacked(const std::string& commands, const std::string& unit,
 }
 
 /// Returns the gnuplot text of three panels side by side, one for each joint or axis.
-std::string beside(const std::string& commands, const std::string& x, const std::string& y,
-                   const std::array<std::string, 3>& plots,
-                   const std::array<const char*, 3>& titles = {"joint 1", "joint 2", "joint 3"}) {
+std::string side_by_side(const std::string& commands, const std::string& x, const std::string& y,
+                         const std::array<std::string, 3>& plots,
+                         const std::array<const char*, 3>& titles = {"joint 1", "joint 2",
+                                                                     "joint 3"}) {
   std::string text = quiet("") + commands +
                      "set multiplot layout 1,3 margins 0.085,0.985,0.2,0.885 spacing 0.055\n";
   text += fmt::format("set xlabel '{}' font ',15'\n", x);
@@ -89,8 +90,8 @@ std::string friction_plot() {
         "'{2}'",
         i, report::kInk, kFitInk);
   }
-  return beside("set yzeroaxis lw 1 lc rgb '#b8c2cc'\nset xzeroaxis lw 1 lc rgb '#b8c2cc'\n",
-                "speed of the joint [rad/s]", "torque of friction [mN m]", plots);
+  return side_by_side("set yzeroaxis lw 1 lc rgb '#b8c2cc'\nset xzeroaxis lw 1 lc rgb '#b8c2cc'\n",
+                      "speed of the joint [rad/s]", "torque of friction [mN m]", plots);
 }
 
 std::string masses_plot() {
@@ -102,7 +103,7 @@ std::string masses_plot() {
         "yerrorbars pt 7 ps 0.8 lw 1.5 lc rgb '{2}'",
         i, kFitInk, report::kInk);
   }
-  return beside("", "fitted [g]", "measured [g]", plots, {"along x", "along y", "along z"});
+  return side_by_side("", "fitted [g]", "measured [g]", plots, {"along x", "along y", "along z"});
 }
 
 std::string lines_plot(const bringup::Identified& identified) {
@@ -129,8 +130,8 @@ std::string lines_plot(const bringup::Identified& identified) {
                            "yerrorbars pt 7 ps 0.7 lw 1.5 lc rgb '{2}'",
                            i, kFitInk, report::kInk);
   }
-  return beside("set logscale xy\nset xrange [14:400]\nset xtics (15, 30, 60, 120, 240)\n",
-                "frequency [Hz]", "motion relative to stiff cables", plots);
+  return side_by_side("set logscale xy\nset xrange [14:400]\nset xtics (15, 30, 60, 120, 240)\n",
+                      "frequency [Hz]", "motion relative to stiff cables", plots);
 }
 
 }  // namespace

@@ -11,16 +11,16 @@
 #include "bringup/identify/cables/two_mass_search.h"
 #include "bringup/identify/joint_friction.h"
 #include "bringup/identify/line_forces.h"
-#include "bringup/identify/link_inertia/place_masses.h"
+#include "bringup/identify/link_inertia/masses_per_pose.h"
 
 namespace thimble::identified {
 namespace {
 
 constexpr double kExcerpt = 2;  // s, from the middle of the motion
 constexpr double kGap = 0.02;   // s, more than the distance of two adjacent pieces
-constexpr std::size_t kPointsMost = 1500;
-constexpr int kSteps = 21;               // intervals of speed for the medians
-constexpr std::size_t kInStepLeast = 8;  // min. number of pieces for a median
+constexpr std::size_t kPointsMax = 1500;
+constexpr int kSteps = 21;             // intervals of speed for the medians
+constexpr std::size_t kInStepMin = 8;  // min. number of pieces for a median
 constexpr int kFrequencies = 400;
 
 /// Writes a block of lines for each axis; `line(equation number, time)` returns one line.
@@ -84,7 +84,7 @@ std::string rest_table(const bringup::FittedMotion& motion) {
 std::string friction_table(const bringup::FittedMotion& motion, const bringup::Identified& found) {
   std::string text = "# speed rad/s, torque of friction N m\n";
   for (const auto& points : bringup::joint_friction(motion, found)) {
-    const std::size_t stride = points.size() / kPointsMost + 1;
+    const std::size_t stride = points.size() / kPointsMax + 1;
     for (std::size_t i = 0; i < points.size(); i += stride) {
       text += fmt::format("{:.6g} {:.6g}\n", points[i].speed, points[i].torque);
     }
@@ -99,17 +99,17 @@ std::string friction_medians(const bringup::FittedMotion& motion,
   for (const auto& points : bringup::joint_friction(motion, found)) {
     std::vector<double> speeds;
     for (const bringup::FrictionPoint& point : points) speeds.push_back(std::abs(point.speed));
-    const double most = speeds.empty() ? 0 : quantile(speeds, 0.98);
-    const double step = 2 * most / kSteps;
+    const double max_speed = speeds.empty() ? 0 : quantile(speeds, 0.98);
+    const double step = 2 * max_speed / kSteps;
     for (int k = 0; k < kSteps; ++k) {
-      const double from = -most + k * step;
+      const double from = -max_speed + k * step;
       std::vector<double> seen, fitted;
       for (const bringup::FrictionPoint& point : points) {
         if (point.speed < from || point.speed >= from + step) continue;
         seen.push_back(point.torque);
         fitted.push_back(point.fitted);
       }
-      if (seen.size() < kInStepLeast) continue;
+      if (seen.size() < kInStepMin) continue;
       text += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g} {:.6g}\n", from + 0.5 * step,
                           quantile(seen, 0.5), quantile(seen, 0.25), quantile(seen, 0.75),
                           quantile(fitted, 0.5));
@@ -121,10 +121,9 @@ std::string friction_medians(const bringup::FittedMotion& motion,
 
 std::string masses_table(const bringup::Identified& identified, const scene::ArmFile& file) {
   std::string text = "# apparent mass fitted, measured, half its interval, kg\n";
-  const std::vector<bringup::PlaceMass> places =
-      bringup::masses_at_places(*identified.over.fit, file);
+  const std::vector<bringup::PoseMass> places = bringup::pose_masses(*identified.over.fit, file);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const bringup::PlaceMass& place : places) {
+    for (const bringup::PoseMass& place : places) {
       text += fmt::format("{:.6g} {:.6g} {:.3g}\n", place.mass[axis].value, place.seen[axis].value,
                           place.seen[axis].plus_minus);
     }

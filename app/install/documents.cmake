@@ -1,9 +1,9 @@
-# Writes README, changelog, security page and guide into a package's folder of documents, at `cmake --install`.
-# A link to what lies elsewhere there is turned; of one to what is not installed the text stays.
+# Installs README, changelog, security page and guide into the documentation folder of a package, at `cmake --install`.
+# Links to installed files are adapted to their new places. Of links to files that are not installed, only the text remains.
 #   cmake -D SOURCE=... -D FOLDER=... -P documents.cmake      FOLDER: PREFIX/share/doc/thimble
 cmake_minimum_required(VERSION 3.25)
 
-# Says where a file of the sources lies seen from FOLDER; "" if it is not installed.
+# Returns the installed path of a source file relative to FOLDER; "" if the file is not installed.
 function(place_of file place)
   set(found "")
   if(file MATCHES "^(README|CHANGELOG|SECURITY)\\.md$")

@@ -1,14 +1,14 @@
-# `cpack -G DEB` in the build folder: a Debian package of each component that is installed (CMakeLists.txt here).
+# Debian packages: `cpack -G DEB` in the build folder makes one of each installed component (CMakeLists.txt here).
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME thimble)
 set(CPACK_PACKAGE_VENDOR "Thimble")
-# The same two variables that Debian's own tools read name the maintainer. The default is an address
+# The maintainer is named by the two variables that Debian's tools read. The default is an address
 # that will never exist (RFC 2606).
 set(CPACK_PACKAGE_CONTACT "Thimble developers <thimble@unreachable.invalid>")
 if(DEFINED ENV{DEBEMAIL})
   set(CPACK_PACKAGE_CONTACT "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
 endif()
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has a first line of its own
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own first line
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -18,8 +18,8 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 
 # thimble_package(PACKAGE COMPONENT name [DEPENDS text] [RECOMMENDS text] [SUGGESTS text] [SECTION name] [LIBRARIES]
-#                 DESCRIPTION text): LIBRARIES: it also depends on the libraries that its files are linked with. Each package holds
-# its licence and its changes, as Debian wants.
+#                 DESCRIPTION text): adds a package. With LIBRARIES it also depends on the libraries that its files are linked
+# with. Each package contains its licence and its changelog, as required by Debian.
 macro(thimble_package package)
   cmake_parse_arguments(ARG "LIBRARIES" "COMPONENT;DEPENDS;RECOMMENDS;SUGGESTS;SECTION;DESCRIPTION" "" ${ARGN})
   string(TOUPPER ${ARG_COMPONENT} name)
@@ -56,16 +56,16 @@ macro(thimble_package package)
 endmacro()
 set(same_version "thimble (= ${PROJECT_VERSION})")
 
-# Below 40 MB with what it depends on (tests/program/package_test.sh). Not needed to touch: scans that scenes name (unpacked on
-# first use), plots, what a page in the browser is made of, and the other packages.
+# Below 40 MB with all dependencies (tests/program/package_test.sh). Only recommended: scans that scenes name (unpacked on
+# first use), plots, the libraries of report pages, and the other packages.
 thimble_package(thimble COMPONENT program LIBRARIES
   RECOMMENDS "libcgal-demo, gnuplot-nox, fonts-dejavu-core, libjs-three, libjs-dygraphs, thimble-viewer, thimble-mesh-formats"
   SUGGESTS "thimble-studies, thimble-compat, thimble-ros2, python3-thimble"
   DESCRIPTION
-"touch virtual objects by a force-feedback arm, real or simulated
-Thimble drives 3-DOF force-feedback arms on USB, simulates them where there is
-none, and renders triangle meshes, shapes and fields to the hand at 1 kHz and
-more, with textures, friction and bodies that dent, move and snap.")
+"feel virtual objects through a force-feedback arm, real or simulated
+Thimble drives 3-DOF force-feedback arms on USB, simulates them if none is
+plugged in, and renders triangle meshes, shapes and fields at 1 kHz and more,
+with textures, friction and bodies that dent, move and snap.")
 list(APPEND CPACK_COMPONENTS_ALL udev)
 set(CPACK_COMPONENT_UDEV_GROUP program)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_SOURCE_DIR}/postinst")  # udev reads the rules again
@@ -84,7 +84,8 @@ if(TARGET thimble_viewer_program)
     RECOMMENDS "libegl1, libegl-mesa0, libgl1, libgl1-mesa-dri" SUGGESTS ffmpeg DESCRIPTION
 "window and pictures of runs of Thimble
 The window of `thimble view`, which shows a run or a recording, plays its sound
-and leads the simulated hand, and the pictures and films of `thimble shot`.")
+and moves the simulated hand; and the pictures and animations of
+`thimble shot`.")
 endif()
 
 if(TARGET thimble_studies_program)
@@ -97,36 +98,37 @@ endif()
 if(TARGET thimble_mesh_formats)
   thimble_package(thimble-mesh-formats COMPONENT mesh_formats LIBRARIES DEPENDS "${same_version}" DESCRIPTION
 "more mesh formats for Thimble
-Lets scenes of Thimble name meshes in COLLADA (DAE), AMF, 3DS and glTF 1.")
+Readers for meshes in COLLADA (DAE), AMF, 3DS and glTF 1.")
 endif()
 
 if(TARGET thimble_compat_libraries)
   thimble_package(thimble-compat COMPONENT compat LIBRARIES DEPENDS "${same_version}" DESCRIPTION
 "programs written for other force-feedback arms, on Thimble
-The libraries that `thimble exec` puts in front of those of other makers, with
+The libraries that `thimble exec` loads instead of those of other makers, with
 the interfaces HDAPI, DHD and DRD, and hdPhantom of CHAI3D.")
   # Until 0.2 its files were in the package thimble.
   set(CPACK_DEBIAN_COMPAT_PACKAGE_BREAKS "thimble (<< 0.3.0)")
   set(CPACK_DEBIAN_COMPAT_PACKAGE_REPLACES "thimble (<< 0.3.0)")
 endif()
 
-# The Python module is for the Python that it was built with, and no other.
+# The Python module works only with the Python version for which it was built.
 if(THIMBLE_HAS_PYTHON)
   math(EXPR python_next "${Python_VERSION_MINOR} + 1")
   string(CONCAT python_needs "${same_version}, python3-numpy, "
          "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${python_next})")
   thimble_package(python3-thimble COMPONENT python SECTION python LIBRARIES DEPENDS "${python_needs}"
     SUGGESTS "thimble-viewer, thimble-studies, python3-matplotlib, python3-numba, jupyter-notebook" DESCRIPTION
-"touch virtual objects from Python
+"feel virtual objects from Python
 The scenes, simulated arms, recordings and studies of Thimble as numpy arrays:
 whole runs in virtual time, tick by tick, or watched in real time.")
 endif()
 
-# Topics of ROS 2, where there was a Cyclone DDS to build the module with.
+# Topics of ROS 2, if Cyclone DDS was found.
 if(TARGET thimble_ros2)
   thimble_package(thimble-ros2 COMPONENT ros2 LIBRARIES DEPENDS "${same_version}" DESCRIPTION
 "runs of Thimble as topics of ROS 2
-What `thimble run --ros2` loads: it publishes joints, pose, velocity, force and
-buttons of a force-feedback arm by DDS and takes forces, without ROS installed.")
+The module of `thimble run --ros2`. It publishes joints, pose, velocity, force
+and buttons of a force-feedback arm by DDS and receives forces. ROS need not be
+installed.")
 endif()
 include(CPack)

@@ -1,12 +1,22 @@
-# Completion of thimble in bash: commands and options are asked of the program itself, so that they
-# are never out of date, and so are the names of scenes and arms; what is neither is a file.
+# Bash completion of thimble. Commands, options, and names of scenes and arms come from the output of the program, so
+# they are never out of date. Other words are completed as files.
 _thimble_names() {
   compgen -W "$("${COMP_WORDS[0]}" run --list 2>/dev/null |
     sed -n "/^$1:/,/^[A-Z]/s/^  \([^ ][^ ]*\) .*/\1/p")" -- "$2"
 }
-# _thimble_choices COMMAND OPTION: the words that an option takes, where its help lists them in braces
+# _thimble_options COMMAND: the options in the help of the command
+_thimble_options() {
+  "${COMP_WORDS[0]}" ${1:+"$1"} --help 2>/dev/null |
+    sed -nE 's/^  ((-[a-z],)?--[a-z0-9-]+(,--[a-z0-9-]+)*).*/\1/p' | tr ',' ' '
+}
+# _thimble_choices COMMAND OPTION: the values of an option, if its help lists them in braces; a long list has several lines
 _thimble_choices() {
-  "${COMP_WORDS[0]}" ${1:+"$1"} --help 2>/dev/null | sed -nE "s/^ +(-[a-z], *)?$2 TEXT:\\{([^}]*)\\}.*/\\2/p" | tr ',' ' '
+  "${COMP_WORDS[0]}" ${1:+"$1"} --help 2>/dev/null | awk -v option="$2" '
+    /^  -/ { inside = 0 }
+    $1 == option || $1 ~ "(^|,)" option "$" { inside = 1 }
+    inside { text = text $0 }
+    inside && /}/ { exit }
+    END { if (sub(/^[^{]*{/, "", text) && sub(/}.*/, "", text)) { gsub(/[, ]+/, " ", text); print text } }'
 }
 _thimble() {
   local before=${COMP_WORDS[COMP_CWORD - 1]} choices
@@ -15,8 +25,7 @@ _thimble() {
     [[ ${COMP_WORDS[i]} == -* ]] || words+=("${COMP_WORDS[i]}")
   done
   if [[ $word == -* ]]; then
-    mapfile -t COMPREPLY < <(compgen -W "$("${COMP_WORDS[0]}" ${words[0]:+"${words[0]}"} --help 2>/dev/null |
-      grep -oE '(^|[ ,])--?[a-z][a-z-]*' | tr -d ' ,')" -- "$word")
+    mapfile -t COMPREPLY < <(compgen -W "$(_thimble_options "${words[0]:-}")" -- "$word")
   elif [[ $before == --hold-to-run ]]; then
     mapfile -t COMPREPLY < <(compgen -W "button key" -- "$word")
   elif [[ $before == --?* ]] && choices=$(_thimble_choices "${words[0]:-}" "$before") && [ -n "$choices" ]; then

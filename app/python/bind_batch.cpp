@@ -29,9 +29,9 @@ using Seeds = py::array_t<std::uint64_t, py::array::c_style | py::array::forceca
 
 /// Many runs of one scene, held by Python. Only one thread may use it, and the GIL is released
 /// during a step, so a second thread gets an error.
-class HeldBatch {
+class PythonBatch {
  public:
-  HeldBatch(RunOptions options, std::size_t count) {
+  PythonBatch(RunOptions options, std::size_t count) {
     session::SessionOptions asked = session_options(options);
     asked.knobs = false;
     asked.several_arms = false;
@@ -59,14 +59,14 @@ class HeldBatch {
     }
     py::array_t<std::uint8_t> reached(count);
     const std::span<std::uint8_t> answers(reached.mutable_data(), size());
-    alone([&] { batch_->step({ticks.data(), size()}, places, answers); });
+    run_exclusively([&] { batch_->step({ticks.data(), size()}, places, answers); });
     return py::make_tuple(array_of(batch_->newest()), reached);
   }
 
   /// Restarts some of the runs, each with its seed.
   void restart(const Counts& which, const Seeds& seeds) {
     if (which.size() != seeds.size()) throw ArgumentError("seeds: expected a seed for each arm.");
-    alone([&] {
+    run_exclusively([&] {
       for (py::ssize_t k = 0; k < which.size(); ++k) {
         const std::size_t i = which.data()[k];
         if (i >= size()) throw ArgumentError("which: there is no arm of this number.");
@@ -79,7 +79,7 @@ class HeldBatch {
 
  private:
   template <class Work>
-  void alone(const Work& work) {
+  void run_exclusively(const Work& work) {
     if (busy_) throw ThimbleError("These arms are already being stepped.");
     busy_ = true;
     try {
@@ -104,27 +104,28 @@ void bind_batch(py::module_& core) {
       .def("drop_unused", &scene::SharedMeshes::drop_unused)
       .def_property_readonly("meshes", &scene::SharedMeshes::meshes)
       .def_property_readonly("surfaces", &scene::SharedMeshes::surfaces);
-  py::class_<HeldBatch>(core, "Batch")
+  py::class_<PythonBatch>(core, "Batch")
       .def(py::init([](const std::string& scene, std::size_t count, const std::string& arm,
                        std::optional<double> seconds, const std::string& quality,
                        std::shared_ptr<scene::SharedMeshes> meshes) {
-             return std::make_unique<HeldBatch>(RunOptions{.scene = scene,
-                                                           .arm_file = arm,
-                                                           .seconds = seconds,
-                                                           .quality = quality,
-                                                           .meshes = std::move(meshes)},
-                                                count);
+             return std::make_unique<PythonBatch>(RunOptions{.scene = scene,
+                                                             .arm_file = arm,
+                                                             .seconds = seconds,
+                                                             .quality = quality,
+                                                             .meshes = std::move(meshes)},
+                                                  count);
            }),
            py::arg("scene"), py::arg("count"), py::kw_only(), py::arg("arm") = "",
            py::arg("seconds") = py::none(), py::arg("quality") = "normal",
            py::arg("meshes") = py::none())
-      .def("__len__", &HeldBatch::size)
-      .def("step", &HeldBatch::step, py::arg("ticks"), py::arg("hands") = py::none())
-      .def("restart", &HeldBatch::restart, py::arg("which"), py::arg("seeds"))
-      .def(
-          "warnings",
-          [](const HeldBatch& held) { return stability::stability_warnings(held.first().scene()); })
-      .def("info", [](const HeldBatch& held) { return info_of(held.first().recording_info()); });
+      .def("__len__", &PythonBatch::size)
+      .def("step", &PythonBatch::step, py::arg("ticks"), py::arg("hands") = py::none())
+      .def("restart", &PythonBatch::restart, py::arg("which"), py::arg("seeds"))
+      .def("warnings",
+           [](const PythonBatch& held) {
+             return stability::stability_warnings(held.first().scene());
+           })
+      .def("info", [](const PythonBatch& held) { return info_of(held.first().recording_info()); });
 }
 
 }  // namespace thimble::python

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "own_laws.h"
+#include "custom_laws.h"
 #include "scene_run.h"
 #include "stability/tuning.h"
 #include "thimble/render/scene_touch.h"
@@ -29,8 +29,8 @@ namespace {
 using driver::TickRecord;
 
 /// A run with its Python law, if any.
-struct HeldRun {
-  explicit HeldRun(const RunOptions& options, const py::object& own_law)
+struct PythonRun {
+  explicit PythonRun(const RunOptions& options, const py::object& own_law)
       : run((py::gil_scoped_release(), std::make_unique<SceneRun>(options))) {
     if (own_law.is_none()) return;
     scene_law.emplace(run->session().own_law());
@@ -39,12 +39,12 @@ struct HeldRun {
       throw ThimbleError(set.error().message);
     }
   }
-  ~HeldRun() {
+  ~PythonRun() {
     const py::gil_scoped_release others;
     run.reset();
   }
-  HeldRun(const HeldRun&) = delete;
-  HeldRun& operator=(const HeldRun&) = delete;
+  PythonRun(const PythonRun&) = delete;
+  PythonRun& operator=(const PythonRun&) = delete;
 
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
     driver::ForceCommand command = (*scene_law)(state);
@@ -56,16 +56,16 @@ struct HeldRun {
   }
 
   std::optional<driver::ForceLaw> scene_law;  // while another law replaces it
-  std::unique_ptr<OwnLaw> law;
+  std::unique_ptr<CustomLaw> law;
   std::unique_ptr<SceneRun> run;
 };
 
 /// Returns the run held by a Python object; null during construction.
-HeldRun* held_by(PyObject* self) {
+PythonRun* python_run_of(PyObject* self) {
   auto* instance = reinterpret_cast<py::detail::instance*>(self);
   if (!instance->simple_layout) return nullptr;  // its memory is not initialised yet
   const py::detail::value_and_holder value = instance->get_value_and_holder();
-  return value.holder_constructed() ? value.value_ptr<HeldRun>() : nullptr;
+  return value.holder_constructed() ? value.value_ptr<PythonRun>() : nullptr;
 }
 
 /// Shows the law of a run to the garbage collector: laws often refer to the owner of the run, and
@@ -76,7 +76,7 @@ py::custom_type_setup collected() {
     type->tp_flags |= Py_TPFLAGS_HAVE_GC;
     type->tp_traverse = [](PyObject* self, visitproc visit, void* arg) {
       Py_VISIT(Py_TYPE(self));
-      const HeldRun* held = held_by(self);
+      const PythonRun* held = python_run_of(self);
       return held != nullptr && held->law ? held->law->traverse(visit, arg) : 0;
     };
     // Stops tracking first: the collector may run while the run ends without the GIL.
@@ -85,14 +85,14 @@ py::custom_type_setup collected() {
       py::detail::pybind11_object_dealloc(self);
     };
     type->tp_clear = [](PyObject* self) {
-      const HeldRun* held = held_by(self);
+      const PythonRun* held = python_run_of(self);
       if (held != nullptr && held->law) held->law->clear();
       return 0;
     };
   });
 }
 
-void run_all(HeldRun& held) {
+void run_all(PythonRun& held) {
   bool interrupted = false;
   {
     const py::gil_scoped_release others;
@@ -105,7 +105,7 @@ void run_all(HeldRun& held) {
   held.rethrow();
 }
 
-bool step_once(HeldRun& held, const std::optional<Eigen::Vector3d>& hand) {
+bool step_once(PythonRun& held, const std::optional<Eigen::Vector3d>& hand) {
   session::Session& session = held.run->session();
   if (hand && session.arms() > 1) {
     throw ThimbleError("hand: requires a scene with one arm; this one has " +
@@ -119,7 +119,7 @@ bool step_once(HeldRun& held, const std::optional<Eigen::Vector3d>& hand) {
   return more;
 }
 
-py::tuple mesh_of(const HeldRun& held, const std::optional<std::string>& object) {
+py::tuple mesh_of(const PythonRun& held, const std::optional<std::string>& object) {
   if (held.run->running())
     throw ThimbleError("The run has not ended. Call stop() before you read its meshes.");
   const session::Session& session = held.run->session();
@@ -145,21 +145,21 @@ py::tuple mesh_of(const HeldRun& held, const std::optional<std::string>& object)
 }
 
 /// Returns the index of an arm given by Python.
-std::size_t arm_of(const HeldRun& held, std::size_t arm) {
+std::size_t arm_of(const PythonRun& held, std::size_t arm) {
   if (arm >= held.run->session().arms())
     throw ArgumentError("arm: the scene has no arm of this number.");
   return arm;
 }
 
-py::list knobs_of(const HeldRun& held) {
+py::list knobs_of(const PythonRun& held) {
   py::list list;
   for (const session::Knob& knob : held.run->session().knobs()) {
-    list.append(py::make_tuple(knob.name, knob.unit, knob.least, knob.most, knob.value));
+    list.append(py::make_tuple(knob.name, knob.unit, knob.min, knob.max, knob.value));
   }
   return list;
 }
 
-void turn(HeldRun& held, const std::string& name, double value) {
+void turn(PythonRun& held, const std::string& name, double value) {
   if (held.run->end()) throw ThimbleError("The run is over; its knobs cannot be changed.");
   const auto turned = held.run->session().turn_knob(name, value);
   if (!turned) throw ArgumentError(turned.error().message);
@@ -168,8 +168,8 @@ void turn(HeldRun& held, const std::string& name, double value) {
 /// Returns the stability warnings of a run's scene. They depend only on its text, the arm's and the
 /// rate, and take 12 ms to compute. The last scenes are cached, because scripts often run one scene
 /// repeatedly.
-std::vector<std::string> warnings_of(const HeldRun& held) {
-  constexpr std::size_t kMost = 64;                             // scenes
+std::vector<std::string> warnings_of(const PythonRun& held) {
+  constexpr std::size_t kScenesMax = 64;                        // scenes
   static std::map<std::string, std::vector<std::string>> kept;  // guarded by the GIL
   const scene::Scene& scene = held.run->session().scene();
   const session::RecordingInfo info = held.run->session().recording_info();
@@ -183,11 +183,11 @@ std::vector<std::string> warnings_of(const HeldRun& held) {
   }
   const auto found = kept.find(key);
   if (found != kept.end()) return found->second;
-  if (kept.size() >= kMost) kept.clear();
+  if (kept.size() >= kScenesMax) kept.clear();
   return kept.emplace(std::move(key), stability::stability_warnings(scene)).first->second;
 }
 
-py::list figures_of(HeldRun& held, std::size_t arm) {
+py::list figures_of(PythonRun& held, std::size_t arm) {
   py::list figures;
   for (const session::Figure& figure : session::figures_of(held.run->figures(arm_of(held, arm)))) {
     py::dict one;
@@ -204,9 +204,9 @@ py::list figures_of(HeldRun& held, std::size_t arm) {
 }
 
 /// Parses the argument for the ROS 2 topics: None, True, or a dict.
-std::optional<ros2::RosWords> topics_of(const py::object& asked) {
+std::optional<ros2::RosOptionStrings> topics_of(const py::object& asked) {
   if (asked.is_none() || (py::isinstance<py::bool_>(asked) && !asked.cast<bool>())) return {};
-  ros2::RosWords words;
+  ros2::RosOptionStrings words;
   if (py::isinstance<py::bool_>(asked)) return words;
   for (const auto& [key, value] : asked.cast<py::dict>()) {
     const std::string name = py::str(key);
@@ -239,7 +239,7 @@ std::optional<ros2::RosWords> topics_of(const py::object& asked) {
 }  // namespace
 
 void bind_run(py::module_& core) {
-  py::class_<HeldRun>(core, "Run", collected())
+  py::class_<PythonRun>(core, "Run", collected())
       .def(py::init([](const std::string& scene, const std::string& arm, const std::string& device,
                        bool agreed, bool unchecked, bool real_time, std::optional<double> seconds,
                        std::optional<std::uint64_t> seed, const std::string& quality,
@@ -247,24 +247,24 @@ void bind_run(py::module_& core) {
                        const py::object& law, bool homed, const std::string& hold_to_run,
                        bool no_real_time, const py::object& ros2,
                        std::shared_ptr<scene::SharedMeshes> meshes) {
-             return std::make_unique<HeldRun>(RunOptions{.scene = scene,
-                                                         .arm_file = arm,
-                                                         .device = device,
-                                                         .unchecked = unchecked,
-                                                         .agreed = agreed,
-                                                         .real_time = real_time,
-                                                         .seconds = seconds,
-                                                         .seed = seed,
-                                                         .quality = quality,
-                                                         .record = record,
-                                                         .overwrite = overwrite,
-                                                         .firmware = firmware,
-                                                         .homed = homed,
-                                                         .topics = topics_of(ros2),
-                                                         .hold_to_run = hold_to_run,
-                                                         .no_real_time = no_real_time,
-                                                         .meshes = std::move(meshes)},
-                                              law);
+             return std::make_unique<PythonRun>(RunOptions{.scene = scene,
+                                                           .arm_file = arm,
+                                                           .device = device,
+                                                           .unchecked = unchecked,
+                                                           .agreed = agreed,
+                                                           .real_time = real_time,
+                                                           .seconds = seconds,
+                                                           .seed = seed,
+                                                           .quality = quality,
+                                                           .record = record,
+                                                           .overwrite = overwrite,
+                                                           .firmware = firmware,
+                                                           .homed = homed,
+                                                           .topics = topics_of(ros2),
+                                                           .hold_to_run = hold_to_run,
+                                                           .no_real_time = no_real_time,
+                                                           .meshes = std::move(meshes)},
+                                                law);
            }),
            py::arg("scene"), py::kw_only(), py::arg("arm") = "", py::arg("device") = "sim",
            py::arg("agreed") = false, py::arg("unchecked") = false, py::arg("real_time") = false,
@@ -273,24 +273,24 @@ void bind_run(py::module_& core) {
            py::arg("firmware") = "", py::arg("law") = py::none(), py::arg("homed") = false,
            py::arg("hold_to_run") = "", py::arg("no_real_time") = false,
            py::arg("ros2") = py::none(), py::arg("meshes") = py::none())
-      .def("topics_report", [](const HeldRun& held) { return held.run->topics_report(); })
+      .def("topics_report", [](const PythonRun& held) { return held.run->topics_report(); })
       .def("run", &run_all)
       .def("step", &step_once, py::arg("hand") = py::none())
-      .def("start", [](HeldRun& held) { held.run->start(); })
+      .def("start", [](PythonRun& held) { held.run->start(); })
       .def("stop",
-           [](HeldRun& held) {
+           [](PythonRun& held) {
              const py::gil_scoped_release others;
              held.run->stop();
            })
       .def(
           "ticks",
-          [](const HeldRun& held, std::size_t arm) {
+          [](const PythonRun& held, std::size_t arm) {
             return array_of(held.run->ticks(arm_of(held, arm)));
           },
           py::arg("arm") = 0)
       .def(
           "latest",
-          [](const HeldRun& held, std::size_t arm) -> py::object {
+          [](const PythonRun& held, std::size_t arm) -> py::object {
             TickRecord tick;
             if (!held.run->session().newest(arm_of(held, arm)).load(tick)) return py::none();
             return one(tick);
@@ -299,7 +299,7 @@ void bind_run(py::module_& core) {
       .def("mesh", &mesh_of, py::arg("object") = py::none())
       .def(
           "summary",
-          [](HeldRun& held, std::size_t arm) {
+          [](PythonRun& held, std::size_t arm) {
             return session::summary(held.run->figures(arm_of(held, arm)));
           },
           py::arg("arm") = 0)
@@ -307,14 +307,14 @@ void bind_run(py::module_& core) {
       .def("warnings", &warnings_of)
       .def(
           "info",
-          [](const HeldRun& held, std::size_t arm) {
+          [](const PythonRun& held, std::size_t arm) {
             return info_of(held.run->session().recording_info(arm_of(held, arm)));
           },
           py::arg("arm") = 0)
       .def("knobs", &knobs_of)
       .def("turn", &turn, py::arg("name"), py::arg("value"))
       .def_property_readonly("arms",
-                             [](const HeldRun& held) {
+                             [](const PythonRun& held) {
                                const session::Session& session = held.run->session();
                                std::vector<std::string> names;
                                for (std::size_t i = 0; session.arms() > 1 && i < session.arms();
@@ -323,16 +323,16 @@ void bind_run(py::module_& core) {
                                }
                                return names;
                              })
-      .def_property_readonly("running", [](const HeldRun& held) { return held.run->running(); })
+      .def_property_readonly("running", [](const PythonRun& held) { return held.run->running(); })
       .def_property_readonly("end",
-                             [](HeldRun& held) -> py::object {
+                             [](PythonRun& held) -> py::object {
                                const auto end = held.run->end();
                                return end ? py::object(py::str(std::string(driver::name(*end))))
                                           : py::none();
                              })
       .def_property_readonly("stride",
-                             [](const HeldRun& held) { return held.run->session().stride(); })
-      .def_property_readonly("objects", [](const HeldRun& held) {
+                             [](const PythonRun& held) { return held.run->session().stride(); })
+      .def_property_readonly("objects", [](const PythonRun& held) {
         std::vector<std::string> names;
         for (const auto& object : held.run->session().scene().objects) names.push_back(object.name);
         return names;

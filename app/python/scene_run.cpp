@@ -35,7 +35,7 @@ class Claim {
 };
 
 /// Prints warnings to stderr, e.g. the limits of a real arm.
-void tell(const std::vector<std::string>& sentences) {
+void log_warnings(const std::vector<std::string>& sentences) {
   for (const std::string& sentence : sentences) {
     scene::logger().warn("{}", sentence);
   }
@@ -75,10 +75,11 @@ session::SessionOptions session_options(const RunOptions& options) {
   if (!options.arm_file.empty()) asked.arm_file = named_by(scene::find_arm_file(options.arm_file));
   asked.knobs = true;
   if (asked.real_arm) {
-    asked.terms = value_of(scene::terms_for(*asked.real_arm, {.arm_file = asked.arm_file,
-                                                              .firmware = options.firmware,
-                                                              .unchecked = options.unchecked}));
-    tell(asked.terms->told);
+    asked.terms =
+        value_of(scene::find_arm_policy(*asked.real_arm, {.arm_file = asked.arm_file,
+                                                          .firmware = options.firmware,
+                                                          .unchecked = options.unchecked}));
+    log_warnings(asked.terms->warnings);
   }
   if (asked.real_arm) {  // requested on a temporary thread, before the arm is opened
     const auto allowed =
@@ -110,7 +111,7 @@ SceneRun::SceneRun(const RunOptions& options) {
   const std::filesystem::path scene = named_by(scene::find_scene(options.scene));
   const session::SessionOptions asked = session_options(options);
   session_ = read_from(scene, session::Session::open(scene, asked));
-  tell(session_->told());
+  log_warnings(session_->warnings());
   if (!options.topics) return;
   if (!options.real_time) {
     throw ThimbleError("ros2: topics require a run in real time. Use thimble.open.");

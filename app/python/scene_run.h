@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "ros2/ros_option_strings.h"
 #include "ros2/ros_run.h"
-#include "ros2/ros_words.h"
 #include "thimble/driver/real_time.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/scene/shared_meshes.h"
@@ -32,7 +32,7 @@ struct RunOptions {
   bool overwrite = false;     ///< `record` may replace an existing recording.
   std::string firmware = {};  ///< For a real arm that needs firmware.
   bool homed = false;         ///< A real arm was in its home pose at power-up: do not ask for it.
-  std::optional<ros2::RosWords> topics = {};  ///< ROS 2 topics; only in real time.
+  std::optional<ros2::RosOptionStrings> topics = {};  ///< ROS 2 topics; only in real time.
   std::string hold_to_run = {};  ///< Button of the arm that must be held for a force; empty: none.
   bool no_real_time = false;     ///< Use a real arm although the loop gets no real-time priority.
   std::shared_ptr<scene::SharedMeshes> meshes = {};  ///< Shared with other runs; null: its own.

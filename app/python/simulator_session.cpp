@@ -9,9 +9,9 @@ SimulatorSession::SimulatorSession(const std::string& arm, const Eigen::Vector3d
     : device_(named_by(
           scene::SimulatedDevice::open(arm, {{0.0, p_WH}}, {.rate = rate, .seed = seed}))) {
   activate();
-  loop_.emplace(device_->device(), device_->clock(), driver::ForceLaw(*this),
-                driver::TickSink(*this),
-                driver::ServoSettings{.period_ns = device_->period_ns(), .outlive_faults = true});
+  loop_.emplace(
+      device_->device(), device_->clock(), driver::ForceLaw(*this), driver::TickSink(*this),
+      driver::ServoSettings{.period_ns = device_->period_ns(), .continue_after_faults = true});
 }
 
 const driver::TickRecord& SimulatorSession::step(const Eigen::Vector3d& f_T_W) noexcept {

@@ -66,22 +66,22 @@ py::object one(const TickRecord& tick) {
 }
 
 py::dict info_of(const session::RecordingInfo& info) {
-  py::dict told;
-  told["scene"] = info.scene;
-  told["scene_file"] = info.scene_file;
-  told["scene_text"] = info.scene_text;
-  told["arm"] = info.arm;
-  told["arm_file"] = info.arm_file;
-  told["arm_text"] = info.arm_text;
-  told["device"] = info.device;
-  told["clock"] = info.clock;
-  told["program"] = info.program;
-  told["rate"] = info.rate;
-  told["seed"] = info.seed;
-  told["arm_in_scene"] = info.arm_in_scene;
-  told["options"] = info.options;
-  told["inside_at_start"] = info.inside_at_start;
-  return told;
+  py::dict info_dict;
+  info_dict["scene"] = info.scene;
+  info_dict["scene_file"] = info.scene_file;
+  info_dict["scene_text"] = info.scene_text;
+  info_dict["arm"] = info.arm;
+  info_dict["arm_file"] = info.arm_file;
+  info_dict["arm_text"] = info.arm_text;
+  info_dict["device"] = info.device;
+  info_dict["clock"] = info.clock;
+  info_dict["program"] = info.program;
+  info_dict["rate"] = info.rate;
+  info_dict["seed"] = info.seed;
+  info_dict["arm_in_scene"] = info.arm_in_scene;
+  info_dict["options"] = info.options;
+  info_dict["inside_at_start"] = info.inside_at_start;
+  return info_dict;
 }
 
 }  // namespace thimble::python

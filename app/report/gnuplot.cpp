@@ -121,14 +121,14 @@ driver::Result<void> draw_plot(const Plot& plot, const std::filesystem::path& fo
   const RunEnd end =
       draw(script_of(plot, png->part().string(), svg->part().string()), folder.string(), log_name);
   if (end == RunEnd::kMissing) return driver::Error{kMissingMessage};
-  const std::string said = content_of(folder / log_name);
+  const std::string messages = content_of(folder / log_name);
   if (end == RunEnd::kBad) {
     return driver::Error{"gnuplot could not draw " + plot.name + " in " + folder.string() +
-                         (said.empty() ? "." : ": " + said)};
+                         (messages.empty() ? "." : ": " + messages)};
   }
   // Warnings (an empty range, a bad font) do not fail a run; they remain in the log.
   std::error_code status;
-  if (said.empty()) std::filesystem::remove(folder / log_name, status);
+  if (messages.empty()) std::filesystem::remove(folder / log_name, status);
   if (auto done = png->commit(); !done) return done;
   return svg->commit();
 }

@@ -125,21 +125,21 @@ struct Layout {
 };
 
 /// Places numbers and names first, so that they never overlap; the panels get the remaining space.
-Layout lay_out(const Window& window, const PanelText& say, bool with_faults) {
+Layout lay_out(const Window& window, const PanelText& texts, bool with_faults) {
   Layout layout;
-  const bool with_path = say.force_max > 0;
-  const double half = 0.5 * say.unit_scale * window.extent;
+  const bool with_path = texts.force_max > 0;
+  const double half = 0.5 * texts.unit_scale * window.extent;
   double free = kWidth - kEdge;
   if (with_path) {
-    layout.force = named_tics(0, say.force_max, 1, 5);
+    layout.force = named_tics(0, texts.force_max, 1, 5);
     free -= 2 * kColours + kTicGap + layout.force.width + kNameHeight;
   }
   for (std::size_t i = 0; i < 3; ++i) {
     Panel& panel = layout.panels[i];
     panel.direction = &view_directions()[i];
     const Eigen::Vector2d middle =
-        say.unit_scale * Eigen::Vector2d(panel.direction->u_W.dot(window.center),
-                                         panel.direction->v_W.dot(window.center));
+        texts.unit_scale * Eigen::Vector2d(panel.direction->u_W.dot(window.center),
+                                           panel.direction->v_W.dot(window.center));
     panel.low = middle - Eigen::Vector2d::Constant(half);
     panel.high = middle + Eigen::Vector2d::Constant(half);
     const NamedTics v = named_tics(panel.low.y(), panel.high.y(), panel.direction->v_sign, 6);
@@ -165,7 +165,7 @@ Layout lay_out(const Window& window, const PanelText& say, bool with_faults) {
 }
 
 /// Returns commands for the title and the key of the lines at its right.
-std::string headings(const Layout& layout, const PanelText& say, bool with_faults) {
+std::string headings(const Layout& layout, const PanelText& texts, bool with_faults) {
   const double y = layout.y(layout.height - kEdge - kRow / 2);
   double right = kWidth - kEdge;
   std::ostringstream c;
@@ -182,7 +182,7 @@ std::string headings(const Layout& layout, const PanelText& say, bool with_fault
       << " nohead " << style << "\n";
     right -= 54 + 40;
   };
-  if (say.force_max > 0) {
+  if (texts.force_max > 0) {
     words("in air", kInk);
     line(std::string("lw 1.5 lc rgb '") + kFaintInk + "'");
     words("behind the mesh", kInk);
@@ -190,11 +190,11 @@ std::string headings(const Layout& layout, const PanelText& say, bool with_fault
   }
   if (with_faults) words("thin and pale: behind the mesh", kFaintInk);
   const double left = layout.panels[0].left;
-  c << "set label 1 " << quote(fitted(say.title, right - 20 - left, 22)) << " at screen "
+  c << "set label 1 " << quote(fitted(texts.title, right - 20 - left, 22)) << " at screen "
     << number(layout.x(left)) << ", screen " << number(y)
     << " font ',22' noenhanced textcolor rgb '" << kInk << "'\n";
   if (with_faults) {
-    c << fault_legend(*say.faults, layout.x(left), layout.y(layout.height - kEdge - 1.5 * kRow));
+    c << fault_legend(*texts.faults, layout.x(left), layout.y(layout.height - kEdge - 1.5 * kRow));
   }
   return c.str();
 }
@@ -233,17 +233,17 @@ std::string colour_scale(const Layout& layout) {
 }
 
 driver::Result<void> draw_views(std::span<const driver::TickRecord> rows,
-                                const render::TriangleMesh& mesh, const PanelText& say,
+                                const render::TriangleMesh& mesh, const PanelText& texts,
                                 const std::string& name, const std::filesystem::path& folder) {
   const Window window = window_of(mesh, rows);
-  const bool with_path = say.force_max > 0;
-  const bool with_faults = say.faults != nullptr && has_marks(*say.faults);
-  const Layout layout = lay_out(window, say, with_faults);
+  const bool with_path = texts.force_max > 0;
+  const bool with_faults = texts.faults != nullptr && has_marks(*texts.faults);
+  const Layout layout = lay_out(window, texts, with_faults);
   std::ostringstream c;
   c << quiet_style() << "set border 15 lw 1 lc rgb '" << kFaintInk << "'\nunset key\nunset grid\n"
     << "set multiplot\n"
-    << headings(layout, say, with_faults);
-  if (with_path) c << kPalette << "set cbrange [0:" << number(say.force_max) << "]\n";
+    << headings(layout, texts, with_faults);
+  if (with_path) c << kPalette << "set cbrange [0:" << number(texts.force_max) << "]\n";
   int index = 0;
   for (const Panel& panel : layout.panels) {
     const MeshView view(mesh, *panel.direction, window.center, window.extent, kPixels);
@@ -251,13 +251,13 @@ driver::Result<void> draw_views(std::span<const driver::TickRecord> rows,
     const std::string image(view.rgb().begin(), view.rgb().end());
     if (auto done = write_text(image, folder / (stem + ".rgb")); !done) return done;
     const double pitch = (panel.high.x() - panel.low.x()) / kPixels;
-    c << frame(panel, layout, say.unit)
+    c << frame(panel, layout, texts.unit)
       << (with_path && index == 2 ? colour_scale(layout) : "unset colorbox\n") << "plot '" << stem
       << ".rgb' binary array=(" << kPixels << "," << kPixels << ") format='%uchar' origin=("
       << number(panel.low.x() + pitch / 2) << "," << number(panel.low.y() + pitch / 2)
       << ") dx=" << number(pitch) << " dy=" << number(pitch) << " with rgbimage notitle";
     if (with_path) {
-      const std::string path = path_table(rows, view, panel, window.extent, say.unit_scale);
+      const std::string path = path_table(rows, view, panel, window.extent, texts.unit_scale);
       if (auto done = write_text(path, folder / (stem + ".dat")); !done) return done;
       const std::string data = ", '" + stem + ".dat' index ";
       c << data << "0 using 1:2 with lines lw 1.2 lc rgb '" << kFaintInk << "'" << data
@@ -266,13 +266,14 @@ driver::Result<void> draw_views(std::span<const driver::TickRecord> rows,
         << "2 using 1:2:3 with lines lw 3.2 lc palette";
     }
     if (with_faults) {
-      const std::string marks = fault_table(*say.faults, mesh, view, kMarkHiddenBy * window.extent);
+      const std::string marks =
+          fault_table(*texts.faults, mesh, view, kMarkHiddenBy * window.extent);
       if (auto done = write_text(marks, folder / (stem + ".dat")); !done) return done;
-      c << fault_clauses(*say.faults, stem + ".dat");
+      c << fault_clauses(*texts.faults, stem + ".dat");
     }
     // Only the first panel draws the headings.
     c << "\nunset label 1\nunset label 2\nunset label 3\nunset arrow\n";
-    if (with_faults) c << end_of_legend(*say.faults);
+    if (with_faults) c << end_of_legend(*texts.faults);
     ++index;
   }
   c << "unset multiplot\n";

@@ -46,7 +46,7 @@ Json to_json(const session::RunFigures& report) {
   json["clock"] = report.virtual_time ? "virtual" : "wall";
   json["ticks"] = run.ticks();
   json["duration_s"] = run.duration();
-  json["rate_Hz"] = {{"asked", report.rate_asked}, {"reached", run.rate()}};
+  json["rate_Hz"] = {{"asked", report.requested_rate}, {"reached", run.rate()}};
   json["period"] = to_json(run.period());
   json["lateness"] = to_json(run.lateness());
   // In virtual time, a tick has no duration.
@@ -75,7 +75,7 @@ Json to_json(const session::RunFigures& report) {
                   {"stalls", report.gate.stalls},
                   {"damped", report.gate.damped},
                   {"bounded", report.gate.bounded},
-                  {"energy_least_J", report.gate.energy_least},
+                  {"energy_least_J", report.gate.min_energy},
                   {"power_limited", report.gate.power_limited},
                   {"power_max_W", report.gate.power_max},
                   {"oscillations", report.gate.oscillations},
@@ -92,9 +92,8 @@ Json to_json(const session::RunFigures& report) {
                                     {"withdrawn", report.carry_withdrawn}};
   }
   if (report.heat_known) {
-    json["heat"] = {{"motors", report.heat},
-                    {"most", report.heat_most},
-                    {"ticks_lowered", report.heat_lowered}};
+    json["heat"] = {
+        {"motors", report.heat}, {"most", report.max_heat}, {"ticks_lowered", report.heat_lowered}};
   }
   json["real_time"] = {{"fifo", report.real_time.fifo},
                        {"memory_locked", report.real_time.memory_locked},

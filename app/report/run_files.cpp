@@ -15,7 +15,7 @@ driver::Result<void> write_arm_files(const session::Session& session,
   const std::string whose = session.arms() > 1 ? ", " + session.arm_name(arm) : "";
   const PictureInfo info{.title = figures.scene + ", " + figures.arm + whose,
                          .virtual_time = figures.virtual_time,
-                         .period = 1 / figures.rate_asked,
+                         .period = 1 / figures.requested_rate,
                          .period_times = &figures.statistics.period(),
                          .work_times = &figures.statistics.work()};
   auto drawn = draw_pictures(page != nullptr ? page->ticks(arm) : session.ticks(arm),

@@ -24,17 +24,17 @@ class Writer {
   Writer(const scene::ArmFile& arm, const std::string& world, const std::string& name_in_scene)
       : arm_(arm) {
     const std::string robot =
-        frame_word(name_in_scene.empty() ? arm.name : name_in_scene + "_" + arm.name);
+        frame_name_of(name_in_scene.empty() ? arm.name : name_in_scene + "_" + arm.name);
     prefix_ = robot + "_";
     text_ = fmt::format("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n  <link name=\"{}\"/>\n",
-                        robot, frame_word(world));
+                        robot, frame_name_of(world));
     const Eigen::Vector3d rpy = rpy_of(arm.R_WB);
     text_ += fmt::format("  <link name=\"{}base\">\n{}  </link>\n", prefix_,
                          visual("<sphere radius=\"0.012\"/>", {0, 0, 0}, {0, 0, 0}));
     text_ += fmt::format(
         "  <joint name=\"{}stand\" type=\"fixed\">\n    <parent link=\"{}\"/>\n    <child "
         "link=\"{}base\"/>\n    <origin xyz=\"{}\" rpy=\"{}\"/>\n  </joint>\n",
-        prefix_, frame_word(world), prefix_, numbers(arm.p_WB), numbers(rpy));
+        prefix_, frame_name_of(world), prefix_, numbers(arm.p_WB), numbers(rpy));
   }
 
   /// Writes a link that is a bar from its joint to `end` (m, in its frame); a bar without length is

@@ -9,7 +9,7 @@
 #include "ros2/dds_domain.h"
 #include "ros2/dds_writers.h"
 #include "ros2/echo_peer.h"
-#include "ros2/message_taker.h"
+#include "ros2/message_reader.h"
 #include "ros2/ros_module.h"
 #include "thimble/version.h"
 
@@ -31,7 +31,7 @@ class CyclonePeer final : public RosPeer {
     if (participant_ < 0) return participant_;
     writers_ = std::make_unique<DdsWriters>(participant_, options_, scene_);
     if (writers_->error() < 0) return writers_->error();
-    taker_ = std::make_unique<MessageTaker>(participant_, options_, channel_);
+    taker_ = std::make_unique<MessageReader>(participant_, options_, channel_);
     if (taker_->error() < 0) return taker_->error();
     waitset_ = dds_create_waitset(participant_);
     if (waitset_ < 0) return waitset_;
@@ -83,14 +83,14 @@ class CyclonePeer final : public RosPeer {
     constexpr std::chrono::milliseconds kLook(20), kAgain(100);
     const std::uint64_t done = channel_.steps->wait_for_ticks(kLook);
     const auto now = std::chrono::steady_clock::now();
-    if (!channel_.steps->idle() || (done == told_ && now - told_when_ < kAgain)) return;
-    if (done == told_) shown_ = UINT64_MAX;
+    if (!channel_.steps->idle() || (done == published_ && now - published_at_ < kAgain)) return;
+    if (done == published_) shown_ = UINT64_MAX;
     publish_newest();
-    channel_.steps->tell(channel_.arm, done);
-    if (options_.moves_time && !channel_.steps->all_told(done)) return;
-    told_ = done;
-    told_when_ = now;
-    if (options_.moves_time) writers_->tell_step(done);
+    channel_.steps->set_published(channel_.arm, done);
+    if (options_.moves_time && !channel_.steps->all_published(done)) return;
+    published_ = done;
+    published_at_ = now;
+    if (options_.moves_time) writers_->publish_step_end(done);
   }
 
   const RosOptions options_;
@@ -99,11 +99,11 @@ class CyclonePeer final : public RosPeer {
   DdsDomain domain_;  // must outlive its entities
   dds_entity_t participant_ = 0, waitset_ = 0;
   std::unique_ptr<DdsWriters> writers_;
-  std::unique_ptr<MessageTaker> taker_;
+  std::unique_ptr<MessageReader> taker_;
   driver::TickRecord record_;
   session::ScenePoses poses_;
-  std::uint64_t shown_ = UINT64_MAX, told_ = 0;
-  std::chrono::steady_clock::time_point told_when_;
+  std::uint64_t shown_ = UINT64_MAX, published_ = 0;
+  std::chrono::steady_clock::time_point published_at_;
   std::atomic<bool> leave_{false};
   std::thread thread_;
 };

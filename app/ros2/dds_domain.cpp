@@ -60,7 +60,7 @@ std::set<int> datagram_sockets() {
 
 /// Makes an IPv4 socket drop all packets not sent from this computer's loopback addresses; the
 /// kernel itself drops such addresses from outside. Returns whether it succeeded.
-bool hear_this_computer_only(int socket) {
+bool accept_loopback_only(int socket) {
   constexpr std::uint32_t kSource = static_cast<std::uint32_t>(SKF_NET_OFF) + 12;  // RFC 791
   std::array<sock_filter, 5> program{{
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kSource),
@@ -85,7 +85,7 @@ dds_return_t DdsDomain::open(const RosOptions& options) {
         options.domain, options.reach == RosReach::kThisComputer ? kHere : kHereUnseen);
     if (domain.entity < 0) return domain.entity;
     for (const int socket : datagram_sockets()) {
-      if (before.contains(socket) || hear_this_computer_only(socket)) continue;
+      if (before.contains(socket) || accept_loopback_only(socket)) continue;
       dds_delete(domain.entity);
       return DDS_RETCODE_NOT_ALLOWED_BY_SECURITY;
     }

@@ -88,7 +88,7 @@ void DdsWriters::publish(const driver::TickRecord& record, const session::SceneP
   publish_health(record, time_ns);
 }
 
-void DdsWriters::tell_step(std::uint64_t ticks) {
+void DdsWriters::publish_step_end(std::uint64_t ticks) {
   std_msgs_msg_dds__UInt64_ done{.data = ticks};
   dds_write(stepped_, &done);
 }
@@ -157,8 +157,8 @@ void DdsWriters::publish_buttons(const driver::TickRecord& record) {
 }
 
 void DdsWriters::publish_button_event(const driver::TickRecord& record) {
-  if (record.buttons == buttons_told_) return;
-  buttons_told_ = record.buttons;
+  if (record.buttons == published_buttons_) return;
+  published_buttons_ = record.buttons;
   omni_msgs_msg_dds__OmniButtonEvent_ event{.grey_button = record.buttons & 1,
                                             .white_button = record.buttons >> 1 & 1};
   dds_write(buttons_, &event);
@@ -177,9 +177,9 @@ void DdsWriters::publish_state(const driver::TickRecord& record) {
 void DdsWriters::publish_health(const driver::TickRecord& record, std::int64_t time_ns) {
   // Once a second, as is usual in ROS [chosen], and when it changes.
   const ArmHealth health = health_of(record);
-  if (health == told_ && time_ns - told_ns_ < kSecond_ns) return;
-  told_ = health;
-  told_ns_ = time_ns;
+  if (health == published_health_ && time_ns - health_time_ns_ < kSecond_ns) return;
+  published_health_ = health;
+  health_time_ns_ = time_ns;
   const std::string name = "thimble: " + scene_.arm;
   const std::string fault(driver::name(record.fault));
   const std::string heat =

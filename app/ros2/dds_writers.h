@@ -24,7 +24,7 @@ class DdsWriters {
   void publish(const driver::TickRecord& record, const session::ScenePoses& poses,
                std::int64_t time_ns);
   /// Reports the end of a step; `ticks` is the total number of ticks.
-  void tell_step(std::uint64_t ticks);
+  void publish_step_end(std::uint64_t ticks);
 
  private:
   static constexpr std::int64_t kLongAgo_ns = 1'000'000'000'000;
@@ -48,9 +48,9 @@ class DdsWriters {
   dds_entity_t joints_, pose_, twist_, wrench_, buttons_, tf_, health_;
   dds_entity_t state_ = 0, clock_ = 0, stepped_ = 0;  // 0: no such topic
   SceneWriter objects_;
-  ArmHealth told_;  // last published health of the arm, and its time, ns
-  std::int64_t told_ns_ = -kLongAgo_ns;
-  std::uint16_t buttons_told_ = 0;
+  ArmHealth published_health_;  // last published health of the arm, and its time, ns
+  std::int64_t health_time_ns_ = -kLongAgo_ns;
+  std::uint16_t published_buttons_ = 0;
   std::vector<char*> joint_names_;
 };
 

@@ -44,7 +44,7 @@ const RosNames& ros_names(RosStyle style) noexcept {
   return kPlain;
 }
 
-std::string frame_word(const std::string& text) {
+std::string frame_name_of(const std::string& text) {
   std::string word;
   for (const char c : text) word += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
   return word.empty() ? "_" : word;

@@ -31,7 +31,7 @@ struct RosNames {
 const RosNames& ros_names(RosStyle style) noexcept;
 
 /// Returns a name that is valid for ROS 2 frames and a URDF: only letters, digits and _.
-std::string frame_word(const std::string& text);
+std::string frame_name_of(const std::string& text);
 
 /// Converts a vector of the world (frame W: x to the user, y to the right, z up) to the axes of a
 /// style. Those of the Omni's drivers are x to the right, y away from the user, z up [S

@@ -72,20 +72,20 @@ struct RosWrench {
 };
 
 /// A valid target of the simulated hand received by a topic.
-struct RosHandPlace {
+struct RosHandTarget {
   std::uint64_t number = 0;     ///< from 1
   std::array<double, 3> p_W{};  ///< m
 };
 
 /// Counters of messages and their problems. Any thread may read them.
 struct RosCounts {
-  std::atomic<std::uint64_t> taken{0};        ///< valid forces
-  std::atomic<std::uint64_t> places{0};       ///< valid targets of the hand
-  std::atomic<std::uint64_t> not_finite{0};   ///< refused
-  std::atomic<std::uint64_t> wrong_frame{0};  ///< refused
-  std::atomic<std::uint64_t> with_torque{0};  ///< accepted without the torque: no motor for it
-  std::atomic<std::uint64_t> skipped{0};      ///< superseded by newer ones before they were read
-  std::atomic<std::uint64_t> published{0};    ///< published ticks
+  std::atomic<std::uint64_t> taken{0};         ///< valid forces
+  std::atomic<std::uint64_t> hand_targets{0};  ///< valid targets of the hand
+  std::atomic<std::uint64_t> not_finite{0};    ///< refused
+  std::atomic<std::uint64_t> wrong_frame{0};   ///< refused
+  std::atomic<std::uint64_t> with_torque{0};   ///< accepted without the torque: no motor for it
+  std::atomic<std::uint64_t> skipped{0};       ///< superseded by newer ones before they were read
+  std::atomic<std::uint64_t> published{0};     ///< published ticks
 };
 
 /// The connection between a run and its peer on the network: no lock in the tick, no library. It
@@ -96,7 +96,7 @@ struct RosChannel {
   const driver::Snapshot<driver::TickRecord>* tick = nullptr;
   driver::Snapshot<session::ScenePoses> poses;  ///< of moving objects; by the servo thread
   driver::Snapshot<RosWrench> wrench;           ///< the newest force; written by the topics' thread
-  driver::Snapshot<RosHandPlace> hand;          ///< the newest target; by the topics' thread
+  driver::Snapshot<RosHandTarget> hand;         ///< the newest target; by the topics' thread
   RosSteps* steps = nullptr;                    ///< for a stepped run, otherwise null
   std::size_t arm = 0;                          ///< index of the arm in the run
   RosCounts counts;

@@ -19,7 +19,7 @@ RosOptions options_of_arm(const session::Session& session, const RosOptions& opt
                           std::size_t arm) {
   RosOptions own = options;
   if (session.arms() == 1) return own;
-  const std::string word = frame_word(session.arm_name(arm));
+  const std::string word = frame_name_of(session.arm_name(arm));
   own.arm_space = "/" + word;
   own.tip_frame = word + "_" + own.tip_frame;
   return own;
@@ -69,11 +69,11 @@ void RosRun::take(const driver::TickRecord& record) noexcept {
     channel_.poses.store(poses_->now());
   }
   if (options_.lead_hand) {
-    RosHandPlace place;
+    RosHandTarget place;
     constexpr int kAttempts = 4;  // an interrupted writer must not delay a tick
-    if (channel_.hand.load(place, kAttempts) && place.number != places_taken_) {
-      places_taken_ = place.number;
-      if (!session_.lead_hand({place.p_W[0], place.p_W[1], place.p_W[2]})) ++places_refused_;
+    if (channel_.hand.load(place, kAttempts) && place.number != targets_taken_) {
+      targets_taken_ = place.number;
+      if (!session_.lead_hand({place.p_W[0], place.p_W[1], place.p_W[2]})) ++targets_refused_;
     }
   }
   if (options_.stepped && ends_tick_) channel_.steps->done(record.tick + 1);
@@ -83,19 +83,22 @@ std::string RosRun::report() const {
   const RosCounts& counts = channel_.counts;
   std::string s = fmt::format("ROS 2     {} ticks published", counts.published.load());
   if (law_) s += fmt::format("; {} forces received, {} limited", counts.taken.load(), law_->cut());
-  if (options_.lead_hand) s += fmt::format("; {} hand targets received", counts.places.load());
+  if (options_.lead_hand)
+    s += fmt::format("; {} hand targets received", counts.hand_targets.load());
   s += ".\n";
-  const auto tell = [&s](std::uint64_t number, const char* what) {
+  const auto add_line = [&s](std::uint64_t number, const char* what) {
     if (number > 0) s += fmt::format("ROS 2     {} {}\n", number, what);
   };
-  tell(counts.skipped.load(), "messages skipped, because newer ones had arrived.");
-  tell(counts.not_finite.load(), "messages refused, because a number was not finite.");
-  tell(counts.wrong_frame.load(), "messages refused, because their frame was not the world frame.");
-  tell(places_refused_, "hand targets refused, because the arm could not reach them.");
-  tell(counts.with_torque.load(),
-       "forces had a torque, which was ignored: the arm has no motor for it.");
+  add_line(counts.skipped.load(), "messages skipped, because newer ones had arrived.");
+  add_line(counts.not_finite.load(), "messages refused, because a number was not finite.");
+  add_line(counts.wrong_frame.load(),
+           "messages refused, because their frame was not the world frame.");
+  add_line(targets_refused_, "hand targets refused, because the arm could not reach them.");
+  add_line(counts.with_torque.load(),
+           "forces had a torque, which was ignored: the arm has no motor for it.");
   if (!law_) return s;
-  tell(law_->stalls(), "times a force was not renewed in time; it was zero until the next one.");
+  add_line(law_->stalls(),
+           "times a force was not renewed in time; it was zero until the next one.");
   if (const session::Histogram& ages = law_->ages(); ages.count() > 0) {
     s += fmt::format(
         "ROS 2     delay from a position to its force: {:.2f} ms (median), {:.2f} ms (99 %)\n",

@@ -45,8 +45,8 @@ class RosRun final : public session::TickObserver {
   RosChannel channel_;
   RosOptions options_;
   bool ends_tick_ = true;  // the arm is the last that the loop serves in a tick
-  std::uint64_t places_taken_ = 0;
-  std::uint64_t places_refused_ = 0;
+  std::uint64_t targets_taken_ = 0;
+  std::uint64_t targets_refused_ = 0;
   const session::PoseRecord* poses_ = nullptr;  // null: no object moves
   std::unique_ptr<WrenchLaw> law_;
   std::unique_ptr<RosPeer> peer_;  // must end before the channel

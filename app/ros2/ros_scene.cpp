@@ -34,18 +34,18 @@ RosObject described(const scene::SceneObjects& objects, std::size_t number,
 RosScene ros_scene(const session::Session& session, const RosOptions& options, std::size_t arm) {
   const session::Setup& setup = session.setup();
   const driver::ArmTraits& traits = session.device(arm).traits();
-  RosScene told;
+  RosScene data;
   const std::string in_scene = session.arms() > 1 ? session.arm_name(arm) : std::string();
-  told.arm = setup.arm_file(arm).name;
-  if (!in_scene.empty()) told.arm = in_scene + " (" + told.arm + ")";
-  if (traits.has_joints) told.joints = joint_names(options.style, traits.has_gimbal ? 6 : 3);
-  told.urdf = arm_urdf(setup.arm_file(arm), options.world_frame, in_scene);
-  if (arm != 0) return told;
+  data.arm = setup.arm_file(arm).name;
+  if (!in_scene.empty()) data.arm = in_scene + " (" + data.arm + ")";
+  if (traits.has_joints) data.joints = joint_names(options.style, traits.has_gimbal ? 6 : 3);
+  data.urdf = arm_urdf(setup.arm_file(arm), options.world_frame, in_scene);
+  if (arm != 0) return data;
   const auto& objects = session.scene().objects;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    told.objects.push_back(described(setup.objects(), i, objects[i].name));
+    data.objects.push_back(described(setup.objects(), i, objects[i].name));
   }
-  return told;
+  return data;
 }
 
 }  // namespace thimble::ros2

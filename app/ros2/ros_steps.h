@@ -21,7 +21,7 @@ class RosSteps {
   /// Sets the number of arms with topics; call it before any of them publishes.
   void expect(std::size_t arms) {
     const std::scoped_lock lock(mutex_);
-    told_.assign(arms, 0);
+    published_.assign(arms, 0);
   }
   /// Permits ticks up to the total number `ticks`; does nothing if they are already permitted.
   void permit(std::uint64_t ticks) {
@@ -54,20 +54,20 @@ class RosSteps {
     return done_ >= permitted_;
   }
   /// Reports that the topics of an arm have published a total of `ticks` ticks.
-  void tell(std::size_t arm, std::uint64_t ticks) {
+  void set_published(std::size_t arm, std::uint64_t ticks) {
     const std::scoped_lock lock(mutex_);
-    told_[arm] = ticks;
+    published_[arm] = ticks;
   }
   /// Returns whether the topics of all arms have published a total of `ticks` ticks.
-  bool all_told(std::uint64_t ticks) {
+  bool all_published(std::uint64_t ticks) {
     const std::scoped_lock lock(mutex_);
-    return *std::min_element(told_.begin(), told_.end()) >= ticks;
+    return *std::min_element(published_.begin(), published_.end()) >= ticks;
   }
 
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<std::uint64_t> told_ = {0};  // by arm
+  std::vector<std::uint64_t> published_ = {0};  // by arm
   std::uint64_t permitted_ = 0, done_ = 0;
 };
 

@@ -14,7 +14,7 @@ constexpr std::array<double, 4> kNotTurned{1, 0, 0, 0};
 SceneWriter::SceneWriter(dds_entity_t participant, const RosOptions& options, const RosScene& scene)
     : options_(options), scene_(scene) {
   for (const RosObject& object : scene.objects) {
-    frames_.push_back(object.moves ? "object_" + frame_word(object.name) : options.world_frame);
+    frames_.push_back(object.moves ? "object_" + frame_name_of(object.name) : options.world_frame);
   }
   if (scene.objects.empty()) return;
   const dds_entity_t writer =
@@ -24,10 +24,10 @@ SceneWriter::SceneWriter(dds_entity_t participant, const RosOptions& options, co
     error_ = writer;
     return;
   }
-  tell_objects(writer);
+  publish_objects(writer);
 }
 
-void SceneWriter::tell_objects(dds_entity_t writer) {
+void SceneWriter::publish_objects(dds_entity_t writer) {
   static const std::string kNothing;
   const std::size_t count = scene_.objects.size();
   std::vector<std::vector<geometry_msgs_msg_dds__Point_>> points(count);

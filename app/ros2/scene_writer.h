@@ -24,7 +24,7 @@ class SceneWriter {
       const session::ScenePoses& poses, const std_msgs_msg_dds__Header_& header) const;
 
  private:
-  void tell_objects(dds_entity_t writer);
+  void publish_objects(dds_entity_t writer);
 
   const RosOptions& options_;
   const RosScene& scene_;

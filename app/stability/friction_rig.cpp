@@ -117,7 +117,7 @@ RigRun rub(render::AnyStage& friction, const std::vector<RigPoint>& way, double 
                             .stall_ns = 20'000'000,
                             .watchdog_ns = 100'000'000};
   // The rig uses rests of any length, and its reports are never old.
-  device_settings.motion.hold_most = 1e9;
+  device_settings.motion.max_hold = 1e9;
   auto spoken = simulated.firmware.ideal_encoders
                     ? driver::make_ideal_arm(arm_model(model))
                     : driver::make_arm(driver::ArmKind::kPolhem, arm_model(model));

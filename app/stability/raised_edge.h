@@ -16,8 +16,8 @@ inline constexpr double kWallRaised = 1.15;
 /// would suffice for a linear loop, but walls of a real arm beyond the edge may rest again. Fails
 /// like `rests`.
 template <class Rests>
-driver::Result<double> raised_edge(double low, double most, const Rests& rests) {
-  for (; low < most; low *= kWallRaised) {
+driver::Result<double> raised_edge(double low, double max, const Rests& rests) {
+  for (; low < max; low *= kWallRaised) {
     const driver::Result<bool> rest = rests(low * kWallRaised);
     if (!rest) return rest.error();
     if (!*rest) break;

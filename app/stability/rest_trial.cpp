@@ -23,7 +23,7 @@ constexpr double kCorner = 50;     // Hz [PHYSICS 2.5]
 
 /// A stretch of a run in which the hand rests, s.
 struct Stretch {
-  double told = 0;   // beginning in the scene's own time
+  double start = 0;  // beginning in the scene's own time
   double until = 0;  // end in the run
 };
 
@@ -40,9 +40,9 @@ std::vector<Stretch> prolong_rests(scene::Scene& scene) {
     std::size_t end = i;
     while (end + 1 < path.size() && same_place(path[end + 1], path[i])) ++end;
     const bool last = end + 1 == path.size();
-    const double told = path[i].time;
-    double held = path[end].time - told;
-    if (last) held = std::max(held, scene.duration - told);
+    const double start = path[i].time;
+    double held = path[end].time - start;
+    if (last) held = std::max(held, scene.duration - start);
     for (std::size_t k = i; k <= end; ++k) path[k].time += later;
     if (last || held >= kHeld) {
       const double more = std::max(0.0, kSettling - held);
@@ -50,10 +50,10 @@ std::vector<Stretch> prolong_rests(scene::Scene& scene) {
         path.push_back(path[i]);
         ++end;
       }
-      if (more > 0 || last) path[end].time = told + later + held + more;
+      if (more > 0 || last) path[end].time = start + later + held + more;
       path[end].stop = path[end].stop || last;
       later += more;
-      rests.push_back({.told = told, .until = path[end].time});
+      rests.push_back({.start = start, .until = path[end].time});
     }
     i = end + 1;
   }
@@ -109,10 +109,10 @@ class Run {
   std::span<const driver::TickRecord> rows() const { return rows_; }
 
   /// Returns the statistics of the force in the last kWatched before tick `end`.
-  Rest watch(double told, std::size_t end) const {
+  Rest watch(double start, std::size_t end) const {
     const auto count = static_cast<std::size_t>(kWatched * scene_->rate);
     const std::size_t begin = end - std::min(end, count);
-    Rest rest{.time = told, .on = {}};
+    Rest rest{.time = start, .on = {}};
     const driver::TickRecord& last = rows_[end - 1];
     if (last.in_contact && last.object >= 0) {
       rest.on = scene_->objects[static_cast<std::size_t>(last.object)].name;
@@ -122,13 +122,13 @@ class Run {
       sum += Eigen::Vector3d(rows_[i].f_sent_W[0], rows_[i].f_sent_W[1], rows_[i].f_sent_W[2]);
     }
     rest.force = sum.norm() / static_cast<double>(end - begin);
-    double squares = 0, most = 0;
+    double squares = 0, max = 0;
     for (const std::vector<double>& axis : fast_) {
       const auto watched = std::span(axis).subspan(begin, end - begin);
       const double rms = root_mean_square(watched);
       squares += rms * rms;
-      if (!(rms > most)) continue;
-      most = rms;
+      if (!(rms > max)) continue;
+      max = rms;
       const auto lines = spectrum(watched, scene_->rate);
       const auto strongest = std::max_element(
           lines.begin(), lines.end(),
@@ -154,8 +154,8 @@ std::vector<std::size_t> deepest_ticks(const scene::Scene& scene,
   std::vector<std::size_t> deepest(scene.objects.size(), rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (!rows[i].in_contact || rows[i].object < 0) continue;
-    std::size_t& most = deepest[static_cast<std::size_t>(rows[i].object)];
-    if (most == rows.size() || rows[i].depth > rows[most].depth) most = i;
+    std::size_t& max = deepest[static_cast<std::size_t>(rows[i].object)];
+    if (max == rows.size() || rows[i].depth > rows[max].depth) max = i;
   }
   std::erase(deepest, rows.size());
   std::sort(deepest.begin(), deepest.end());
@@ -165,10 +165,10 @@ std::vector<std::size_t> deepest_ticks(const scene::Scene& scene,
 }  // namespace
 
 const Rest* RestTrial::worst() const {
-  const auto most = std::max_element(rests.begin(), rests.end(), [](const Rest& a, const Rest& b) {
+  const auto max = std::max_element(rests.begin(), rests.end(), [](const Rest& a, const Rest& b) {
     return a.oscillation < b.oscillation;
   });
-  return most == rests.end() ? nullptr : &*most;
+  return max == rests.end() ? nullptr : &*max;
 }
 
 driver::Result<RestTrial> try_rests(const scene::Scene& scene, const device_sim::HandSettings& hand,
@@ -186,8 +186,8 @@ driver::Result<RestTrial> try_rests(const scene::Scene& scene, const device_sim:
   bool touches = false;
   for (const Stretch& stretch : stretches) {
     const std::size_t end = tick_of(stretch.until);
-    if (end == 0 || end < tick_of(stretch.told)) break;  // a fault ended the run before
-    trial.rests.push_back(run->watch(stretch.told, end));
+    if (end == 0 || end < tick_of(stretch.start)) break;  // a fault ended the run before
+    trial.rests.push_back(run->watch(stretch.start, end));
     touches = touches || trial.rests.back().force > 0;
   }
   trial.fault = run->fault();

@@ -83,13 +83,14 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
   // A jump of 2 F sin(angle / 2), back and forth, has half of it as its RMS.
   const double felt = 2 * math::asin(kFelt / kPressed);
   const double smooth_up_to = object.contact.crease_angle.value_or(render::kCreaseAngle);
-  const double hollow = sharpest_hollow(*mesh, flat ? felt : std::max(felt, smooth_up_to));
-  if (!(hollow > 0)) return;
+  const double concave_angle =
+      sharpest_concave_edge(*mesh, flat ? felt : std::max(felt, smooth_up_to));
+  if (!(concave_angle > 0)) return;
   warnings.push_back(
       fmt::format("{} has concave edges of up to {:.0f} degrees and flat shading there. On such "
                   "an edge, each encoder count makes the force jump sideways by {:.2g} N per "
                   "newton pressed. Choose another tracker.",
-                  object.name, hollow / kDegree, 2 * math::sin(hollow / 2)));
+                  object.name, concave_angle / kDegree, 2 * math::sin(concave_angle / 2)));
 }
 
 /// Limits of a loop with the hand of the scene.
@@ -98,7 +99,7 @@ struct Loop {
   scene::LoopTimes times;
 
   double edge(double damping) const {
-    return carried_by(scene.arms.front().arm, times, 0, damping).stiffness_exact;
+    return stability_limits(scene.arms.front().arm, times, 0, damping).stiffness_exact;
   }
 };
 
@@ -118,7 +119,8 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
     } else if (effect.kind->group == "friction") {
       const double hold = hold_of(effect);
       // The arm's own dry friction stops slow oscillations [PHYSICS 1.4].
-      const Carried carried = carried_by(loop.scene.arms.front().arm, loop.times, 0, 0);
+      const StabilityLimits carried =
+          stability_limits(loop.scene.arms.front().arm, loop.times, 0, 0);
       const double held_speed = oscillation_speed_limit(
           hold, carried.damping, loop.scene.arms.front().arm.simulated.plant.coulomb,
           carried.latency);
@@ -146,7 +148,7 @@ void warn_of_light_body(const scene::SceneObject& object, const Loop& loop,
   for (const render::EffectPlan& effect : object.effects) {
     if (effect.kind->group == "friction") hold = std::max(hold, hold_of(effect));
   }
-  const Carried carried = carried_by(loop.scene.arms.front().arm, loop.times, 0, 0);
+  const StabilityLimits carried = stability_limits(loop.scene.arms.front().arm, loop.times, 0, 0);
   const double felt = motion.kind == render::MotionKind::kRigid ? motion.mass / 3.5 : motion.mass;
   const double share =
       felt / (felt + carried.tip.mass + loop.scene.arms.front().arm.simulated.hand.mass);
@@ -210,7 +212,7 @@ void warn_of_quantisation_noise(const Loop& loop, std::vector<std::string>& warn
 double curvature_of(const render::EffectPlan& texture) {
   const auto stage = texture.build();
   Draw draw(1);
-  double most = 0;
+  double max = 0;
   // Pressed so deep that the height itself is negligible: the force for each newton.
   const auto force = [&stage](const Vector3d& p_W, const Vector3d& n_W) -> Vector3d {
     driver::DeviceState state;
@@ -224,9 +226,9 @@ double curvature_of(const render::EffectPlan& texture) {
     const Vector3d p_W = draw.in_box(0.05), n_W = draw.direction();
     const Vector3d u_W = n_W.cross(draw.direction()).normalized();
     const Vector3d change = force(p_W + kProbe * u_W, n_W) - force(p_W - kProbe * u_W, n_W);
-    most = std::max(most, std::abs(change.dot(u_W)) / (2 * kProbe));
+    max = std::max(max, std::abs(change.dot(u_W)) / (2 * kProbe));
   }
-  return most;
+  return max;
 }
 
 double hold_of(const render::EffectPlan& friction) {
@@ -249,18 +251,18 @@ double hold_of(const render::EffectPlan& friction) {
   return std::max(0.0, (force_at(0, 20) - force_at(kProbe, 21)) / kProbe);
 }
 
-double sharpest_hollow(const render::ContactMesh& mesh, double from) {
-  double most = 0;
+double sharpest_concave_edge(const render::ContactMesh& mesh, double from) {
+  double max = 0;
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
     const render::TriangleCell& cell = mesh.cell(t);
     for (std::size_t k = 0; k < 3; ++k) {
-      if (!mesh.hollow_edge(t, k)) continue;
+      if (!mesh.concave_edge(t, k)) continue;
       // An edge plane leans back by half the angle.
       const double angle = 2 * math::asin(std::min(1.0, -mesh.edge_plane(t, k).n.dot(cell.face.n)));
-      if (angle > from) most = std::max(most, angle);
+      if (angle > from) max = std::max(max, angle);
     }
   }
-  return most;
+  return max;
 }
 
 double quantisation_noise_of(double damping, double step, double speed, double corner,
@@ -286,7 +288,7 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
                     "{{energy: passivity}} in the scene.",
                     what, push));
   };
-  warn("The motors support the arm's weight", scene.arms.front().arm.carried_most);
+  warn("The motors support the arm's weight", scene.arms.front().arm.max_carried_force);
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field) {
       warn(object.name + " pushes the hand", try_field(object, scene.arms.front().arm).push);

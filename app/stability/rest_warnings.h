@@ -46,7 +46,7 @@ double hold_of(const render::EffectPlan& friction);
 /// Returns the sharpest concave edge of a mesh as it is touched (wound outwards), rad. It is the
 /// change of the normal when a tip that rests in the edge passes from one facet to the next. Edges
 /// up to `from` (rad) are skipped.
-double sharpest_hollow(const render::ContactMesh& mesh, double from);
+double sharpest_concave_edge(const render::ContactMesh& mesh, double from);
 
 /// Returns the quantisation noise (N RMS) of a damping `damping` (N s/m) on encoders of `step` (m)
 /// at a `speed` (m/s). The velocity filter has the corner `corner` (Hz; 0: none), the loop the

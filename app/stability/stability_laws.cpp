@@ -91,14 +91,14 @@ double late_stiffness_limit(double damping, double latency, double mass) {
 
 double passive_stiffness(double viscous, double wall_damping, double period, double delay) {
   // Each angle requires K s + B w <= b: the min. K over all angles with s > 0.
-  double least = kNone;
+  double min = kNone;
   for (int i = 0; i <= kAngles; ++i) {
     const AngleTerms terms = terms_at(kPi * i / kAngles, period, delay);
     const double left = viscous - wall_damping * terms.damping;
     if (!(left >= 0) && !(terms.stiffness < 0)) return 0;
-    if (terms.stiffness > 0) least = std::min(least, left / terms.stiffness);
+    if (terms.stiffness > 0) min = std::min(min, left / terms.stiffness);
   }
-  return least;
+  return min;
 }
 
 double passive_stiffness_quantised(double viscous, double coulomb, double encoder_step,
@@ -201,7 +201,7 @@ double limit_by_phase(const SampledWall& wall) {
     return -arm * (half / math::sin(half)) * late;
   };
   const double highest = kPi / wall.period;  // half the rate
-  double least = 0;
+  double min = 0;
   double below = highest / kAngles;
   for (int i = 2; i <= kAngles; ++i) {
     const double above = highest * i / kAngles;
@@ -213,11 +213,11 @@ double limit_by_phase(const SampledWall& wall) {
         ((needed(middle).imag() < 0) == sign ? low : high) = middle;
       }
       const double stiffness = needed(low).real();
-      if (stiffness > 0 && (least == 0 || stiffness < least)) least = stiffness;
+      if (stiffness > 0 && (min == 0 || stiffness < min)) min = stiffness;
     }
     below = above;
   }
-  return least;
+  return min;
 }
 
 double stiffness_edge(SampledWall wall) {

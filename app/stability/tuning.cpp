@@ -50,8 +50,8 @@ scene::ArmFile without_friction(scene::ArmFile arm) {
   return arm;
 }
 
-Edges try_walls(const scene::ArmFile& file, double rate, double damping, const Carried& carried,
-                int per_side) {
+Edges try_walls(const scene::ArmFile& file, double rate, double damping,
+                const StabilityLimits& carried, int per_side) {
   scene::ArmFile arm = file;
   arm.simulated.hand.tremor_amplitude = 0;
   // Room for the hand's path within the workspace.
@@ -78,31 +78,29 @@ Edges try_walls(const scene::ArmFile& file, double rate, double damping, const C
 }
 
 /// Max. rate of a loop that advice names, Hz [chosen: the max. rate of a scene].
-constexpr double kRateMost = 1e5;
+constexpr double kRateMax = 1e5;
 
 /// Returns a rate at which the law allows the values of an object, an integer multiple of the
 /// scene's. Empty if a faster loop would wait for the arm's reports and wire.
-std::optional<double> rate_that_carries(const scene::Scene& scene,
-                                        const scene::SceneObject& object) {
+std::optional<double> stable_rate(const scene::Scene& scene, const scene::SceneObject& object) {
   const auto carries = [&](double rate) {
-    return carried_by(scene.arms.front().arm, loop_times(scene.arms.front().arm, rate),
-                      object.stiffness, object.damping)
+    return stability_limits(scene.arms.front().arm, loop_times(scene.arms.front().arm, rate),
+                            object.stiffness, object.damping)
                .stiffness_exact >= object.stiffness;
   };
   for (int times = 2; times <= 8; ++times) {
-    if (times * scene.rate <= kRateMost && carries(times * scene.rate)) return times * scene.rate;
+    if (times * scene.rate <= kRateMax && carries(times * scene.rate)) return times * scene.rate;
   }
   return {};
 }
 
 /// Returns the largest damping below an object's own at which its stiffness is safe, N s/m; empty
 /// if less damping does not help.
-std::optional<double> damping_that_carries(const scene::Scene& scene,
-                                           const scene::SceneObject& object,
-                                           const scene::LoopTimes& times) {
+std::optional<double> stable_damping(const scene::Scene& scene, const scene::SceneObject& object,
+                                     const scene::LoopTimes& times) {
   const auto carries = [&](double damping) {
-    return carried_by(scene.arms.front().arm, times, object.stiffness, damping).stiffness_safe >=
-           object.stiffness;
+    return stability_limits(scene.arms.front().arm, times, object.stiffness, damping)
+               .stiffness_safe >= object.stiffness;
   };
   double low = object.damping;
   for (int halved = 0; halved < 12; ++halved) {
@@ -128,8 +126,8 @@ double rounded_down(double value) {
 
 /// Returns advice for a wall whose damping makes it grow at any stiffness.
 std::string advice_to_damp_less(const scene::Scene& scene, const scene::SceneObject& object,
-                                const Carried& carried) {
-  const std::optional<double> damping = damping_that_carries(scene, object, carried.times);
+                                const StabilityLimits& carried) {
+  const std::optional<double> damping = stable_damping(scene, object, carried.times);
   std::string text = fmt::format(
       "{}: a damping of {:.3g} N s/m is unstable at any stiffness with a latency of "
       "{:.2f} ms. ",
@@ -137,14 +135,14 @@ std::string advice_to_damp_less(const scene::Scene& scene, const scene::SceneObj
   if (damping) return text + fmt::format("Set it to {:.2g} N s/m or less.", rounded_down(*damping));
   // At most the value without the surface's damping.
   const double safe =
-      carried_by(scene.arms.front().arm, carried.times, object.stiffness, 0).stiffness_safe;
+      stability_limits(scene.arms.front().arm, carried.times, object.stiffness, 0).stiffness_safe;
   return text +
          fmt::format("Set it to 0, and the stiffness to {:.0f} N/m or less.", std::floor(safe));
 }
 
 /// Returns advice for a wall that is too stiff.
 std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
-                   const Carried& carried) {
+                   const StabilityLimits& carried) {
   if (!(carried.stiffness_exact > 0)) return advice_to_damp_less(scene, object, carried);
   std::string text = fmt::format(
       "{}: a stiffness of {:.0f} N/m is unstable; with this arm, loop and hand the "
@@ -153,11 +151,11 @@ std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
       object.name, object.stiffness, carried.stiffness_exact, carried.damping + object.damping,
       1e3 * carried.latency, carried.stiffness_safe);
   const std::optional<double> damping =
-      object.damping > 0 ? damping_that_carries(scene, object, carried.times) : std::nullopt;
+      object.damping > 0 ? stable_damping(scene, object, carried.times) : std::nullopt;
   if (damping && *damping > 0) {
     text += fmt::format(", or its damping to {:.2g} N s/m", rounded_down(*damping));
   }
-  if (const auto rate = rate_that_carries(scene, object)) {
+  if (const auto rate = stable_rate(scene, object)) {
     return text + fmt::format(", or run at {:.0f} Hz.", *rate);
   }
   return text + fmt::format(
@@ -168,8 +166,8 @@ std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
 }
 
 /// Adds how the hand of the scene rested in `trial`, and how hands of other firmness rest.
-void tell_rests(const scene::Scene& scene, const RestTrial& trial,
-                const std::shared_ptr<scene::SharedMeshes>& meshes, TuneResult& result) {
+void report_rests(const scene::Scene& scene, const RestTrial& trial,
+                  const std::shared_ptr<scene::SharedMeshes>& meshes, TuneResult& result) {
   const device_sim::HandSettings& own = scene.arms.front().arm.simulated.hand;
   for (const Rest& rest : trial.rests) {
     result.text +=
@@ -197,9 +195,9 @@ void tell_rests(const scene::Scene& scene, const RestTrial& trial,
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > stiffest)) continue;
     stiffest = object.stiffness;
-    const Carried carried =
-        carried_by(scene.arms.front().arm, loop_times(scene.arms.front().arm, scene.rate),
-                   object.stiffness, object.damping);
+    const StabilityLimits carried =
+        stability_limits(scene.arms.front().arm, loop_times(scene.arms.front().arm, scene.rate),
+                         object.stiffness, object.damping);
     safe = carried.stiffness_safe;
     if (others.size() > 2) others.pop_back();
     others.emplace_back("worst hand in this range", carried.worst_hand);
@@ -219,21 +217,21 @@ void tell_rests(const scene::Scene& scene, const RestTrial& trial,
 }
 
 /// Reports the limit of a wall that another program computes, over topics.
-void tell_topics(const scene::Scene& scene, const scene::LoopTimes& times, const AnswerAges& ages,
-                 TuneResult& result) {
+void report_topics(const scene::Scene& scene, const scene::LoopTimes& times, const AnswerAges& ages,
+                   TuneResult& result) {
   scene::LoopTimes late = times;
-  late.delay += ages.most;
-  const Carried here = carried_by(scene.arms.front().arm, times, 1000, 0);
-  const Carried there = carried_by(scene.arms.front().arm, late, 1000, 0);
+  late.delay += ages.percentile_99;
+  const StabilityLimits here = stability_limits(scene.arms.front().arm, times, 1000, 0);
+  const StabilityLimits there = stability_limits(scene.arms.front().arm, late, 1000, 0);
   result.text += fmt::format(
       "ROS 2     forces are based on positions that are {:.2f} ms old (median), "
       "{:.2f} ms (99 %). Limit of a wall without damping that the other program "
       "computes: {:.0f} N/m by the law, {:.0f} N/m safe; computed here: {:.0f} N/m, "
       "{:.0f} N/m.\n",
-      1e3 * ages.median, 1e3 * ages.most, there.stiffness_exact, there.stiffness_safe,
+      1e3 * ages.median, 1e3 * ages.percentile_99, there.stiffness_exact, there.stiffness_safe,
       here.stiffness_exact, here.stiffness_safe);
   result.figures.push_back({"topics.age_median", 1e3 * ages.median, "ms", ""});
-  result.figures.push_back({"topics.age_99", 1e3 * ages.most, "ms", ""});
+  result.figures.push_back({"topics.age_99", 1e3 * ages.percentile_99, "ms", ""});
   result.figures.push_back({"topics.stiffness", there.stiffness_exact, "N/m", ""});
   result.figures.push_back({"topics.stiffness_safe", there.stiffness_safe, "N/m", ""});
 }
@@ -247,9 +245,9 @@ scene::LoopTimes loop_times(const scene::ArmFile& arm, double rate, double perio
   return times;
 }
 
-Carried carried_by(const scene::ArmFile& arm, const scene::LoopTimes& times, double stiffness,
-                   double damping) {
-  Carried carried;
+StabilityLimits stability_limits(const scene::ArmFile& arm, const scene::LoopTimes& times,
+                                 double stiffness, double damping) {
+  StabilityLimits carried;
   carried.times = times;
   carried.latency = scene::latency_of(times);
   carried.tip = scene::worst_over_workspace(arm);
@@ -306,9 +304,9 @@ std::vector<std::string> stability_warnings(const scene::Scene& scene) {
   if (!scene.arms.front().arm.can_simulate) return warnings;  // its tip is unknown
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > 0)) continue;
-    const Carried carried =
-        carried_by(scene.arms.front().arm, loop_times(scene.arms.front().arm, scene.rate),
-                   object.stiffness, object.damping);
+    const StabilityLimits carried =
+        stability_limits(scene.arms.front().arm, loop_times(scene.arms.front().arm, scene.rate),
+                         object.stiffness, object.damping);
     if (object.stiffness > carried.stiffness_exact) {
       warnings.push_back(advice(scene, object, carried));
     }
@@ -333,7 +331,7 @@ driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& op
   TuneResult result;
   const scene::ArmFile& arm = scene.arms.front().arm;
   const scene::LoopTimes times = loop_times(arm, scene.rate, options.period_spread);
-  const Carried bare = carried_by(arm, times, 1000, 0);
+  const StabilityLimits bare = stability_limits(arm, times, 1000, 0);
   const double waited = times.delay - scene::loop_delay(arm);
   result.text += fmt::format(
       "{} at {:.0f} Hz, with the hand of its file ({:.3g} kg, {:.3g} N/m, {:.3g} N s/m):\n",
@@ -364,10 +362,10 @@ driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& op
                     {"passive_stiffness", bare.passive, "N/m", ""},
                     {"bristle_stiffness", bare.bristle_stiffness, "N/m", ""},
                     {"bristle_length_per_newton", 1e3 / bare.bristle_stiffness, "mm/N", ""}};
-  if (options.topics) tell_topics(scene, times, *options.topics, result);
+  if (options.topics) report_topics(scene, times, *options.topics, result);
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > 0)) continue;
-    const Carried carried = carried_by(arm, times, object.stiffness, object.damping);
+    const StabilityLimits carried = stability_limits(arm, times, object.stiffness, object.damping);
     result.text += fmt::format("{}: the scene sets {:.0f} N/m and {:.3g} N s/m.\n", object.name,
                                object.stiffness, object.damping);
     result.text +=
@@ -414,7 +412,7 @@ driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& op
   for (const std::string& warning : stability_warnings(scene)) {
     result.text += "Warning   " + warning + "\n";
   }
-  tell_rests(scene, *trial, meshes, result);
+  report_rests(scene, *trial, meshes, result);
   return result;
 }
 

@@ -13,7 +13,7 @@
 namespace thimble::stability {
 
 /// Limits of an arm, its loop and its hand by the laws, in the worst direction.
-struct Carried {
+struct StabilityLimits {
   scene::LoopTimes times;
   double latency = 0;          ///< s
   scene::TipLimits tip;        ///< Limits of the arm without a hand.
@@ -34,8 +34,8 @@ struct Carried {
 };
 
 /// Computes the limits for a loop of `times`, a wall of `stiffness` (N/m) and `damping` (N s/m).
-Carried carried_by(const scene::ArmFile& arm, const scene::LoopTimes& times, double stiffness,
-                   double damping);
+StabilityLimits stability_limits(const scene::ArmFile& arm, const scene::LoopTimes& times,
+                                 double stiffness, double damping);
 
 /// Returns the times of a loop of `rate` (Hz) with this arm, without jitter.
 scene::LoopTimes loop_times(const scene::ArmFile& arm, double rate, double period_spread = 0);
@@ -53,7 +53,7 @@ struct TuneResult {
 /// Age of the positions to which forces respond if another program computes them, s.
 struct AnswerAges {
   double median = 0;
-  double most = 0;  ///< 99th percentile
+  double percentile_99 = 0;  ///< 99th percentile
 };
 
 /// Options of a tuning.

@@ -19,7 +19,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 // Range of a report [DEVICES 1]: no limit acts below it.
-constexpr double kCurrentMost = 32;  // A
+constexpr double kCurrentMax = 32;  // A
 
 constexpr int kKickTicks = 4;  // so that no kick exceeds the motors' current
 
@@ -100,9 +100,9 @@ scene::ArmFile arm_of(const scene::ArmFile& file, const WallCase& wall) {
                   .soft_start = 0.05,
                   .stall_ns = 1'000'000'000,
                   .watchdog_ns = 1'000'000'000};
-    arm.simulated.motors.current_max = kCurrentMost;
+    arm.simulated.motors.current_max = kCurrentMax;
     arm.simulated.firmware.current_range_mA = 32767;
-    for (auto& drive : arm.model.drives) drive.current_max = kCurrentMost;
+    for (auto& drive : arm.model.drives) drive.current_max = kCurrentMax;
   }
   return arm;
 }
@@ -181,7 +181,7 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
                                       .limits = arm.limits,
                                       .energy = wall.energy,
                                       // Disabled, because trials contain walls at rest.
-                                      .motion = {.hold_most = 1e9},
+                                      .motion = {.max_hold = 1e9},
                                       .velocity_corner_frequency = arm.velocity_corner_frequency,
                                       .silence_limit_ns = 1'000'000'000,
                                       .no_motors = true},

@@ -18,13 +18,13 @@ constexpr double kBefore = 0.4;   // s; time from the earlier measurement
 
 /// Returns the peak-to-peak motion of the tip in a period of time, m.
 double oscillation_between(const WallRun& run, double from, double to) {
-  double least = 1e9, most = -1e9;
+  double min = 1e9, max = -1e9;
   for (std::size_t i = 0; i < run.x.size(); ++i) {
     if (run.time[i] < from || run.time[i] >= to) continue;
-    least = std::min(least, run.x[i]);
-    most = std::max(most, run.x[i]);
+    min = std::min(min, run.x[i]);
+    max = std::max(max, run.x[i]);
   }
-  return std::max(0.0, most - least);
+  return std::max(0.0, max - min);
 }
 
 /// Returns the RMS deviation of the force from its mean after a time, N.

@@ -16,7 +16,7 @@ ResidentMemory resident_memory() {
     std::size_t kilobytes = 0;
     if (!(words >> key >> kilobytes)) continue;
     if (key == "VmRSS:") memory.now = 1024 * kilobytes;
-    if (key == "VmHWM:") memory.most = 1024 * kilobytes;
+    if (key == "VmHWM:") memory.peak = 1024 * kilobytes;
   }
   return memory;
 }

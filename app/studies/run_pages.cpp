@@ -50,7 +50,7 @@ driver::Result<void> RunPages::add(const std::filesystem::path& scene, const std
   std::string why;
   if (const auto libraries = report::read_page_libraries(); !libraries)
     why = libraries.error().message;
-  if (why.empty() && bytes_ >= kBytesMost)
+  if (why.empty() && bytes_ >= kBytesMax)
     why = "The total size of the pages has reached its limit.";
   if (why.empty()) {
     if (auto written = write_run(scene, options, page); !written) why = written.error().message;

@@ -15,7 +15,7 @@ class RunPages {
  public:
   /// Total bytes of all pages after which no further one is written. [chosen: ten minutes of touch,
   /// and small enough for mail]
-  static constexpr std::uintmax_t kBytesMost = 25'000'000;
+  static constexpr std::uintmax_t kBytesMax = 25'000'000;
 
   /// Lists runs in the existing `folder` under `title`; `words` describe them.
   RunPages(std::filesystem::path folder, const std::string& title, const std::string& words);

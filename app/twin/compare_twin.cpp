@@ -15,7 +15,7 @@ namespace thimble::twin {
 namespace {
 
 /// Correlation of two errors: sums over all ticks with a report.
-double dot(const std::vector<TwinWindow>& windows, const Relived& a, const Relived& b) {
+double dot(const std::vector<TwinWindow>& windows, const ReplayError& a, const ReplayError& b) {
   double sum = 0;
   for (std::size_t w = 0; w < windows.size(); ++w) {
     for (std::size_t j = 0; j < windows[w].seen.size(); ++j) {
@@ -30,8 +30,8 @@ double dot(const std::vector<TwinWindow>& windows, const Relived& a, const Reliv
 /// Finds the value of one constant with the smallest error.
 class Remedy {
  public:
-  Remedy(Relive& relive, const scene::ArmFile& file, const TwinConstant& constant, Relived& now)
-      : relive_(relive), file_(file), constant_(constant), now_(now) {}
+  Remedy(Replay& replay, const scene::ArmFile& file, const TwinConstant& constant, ReplayError& now)
+      : replay_(replay), file_(file), constant_(constant), now_(now) {}
 
   driver::Result<TwinRemedy> find() {
     const double value = constant_.get(file_);
@@ -41,7 +41,7 @@ class Remedy {
                       .best = value,
                       .expected = now_.rms(),
                       .error_rms = now_.rms()};
-    Relived at_best = now_;
+    ReplayError at_best = now_;
     for (int round = 0; round < kRounds; ++round) {
       const auto step = step_from(remedy.best, at_best);
       if (!step) return step.error();
@@ -49,7 +49,7 @@ class Remedy {
       bool nearer = false;
       double by = step->first;
       for (int half = 0; half < kHalves && !nearer; ++half, by /= 2) {
-        const double to = std::max(constant_.least, remedy.best + by);
+        const double to = std::max(constant_.min_value, remedy.best + by);
         if (to == remedy.best) break;
         auto there = at(to);
         if (!there) return there.error();
@@ -74,15 +74,15 @@ class Remedy {
   static constexpr int kRounds = 4, kHalves = 2;
   static constexpr double kSettled = 0.02;
 
-  driver::Result<Relived> at(double value) {
+  driver::Result<ReplayError> at(double value) {
     scene::ArmFile other = file_;
     constant_.set(other, value);
-    return relive_(other);
+    return replay_(other);
   }
 
   /// Returns the Gauss-Newton step from a value, and its predicted share of the squared error.
-  driver::Result<std::pair<double, double>> step_from(double value, const Relived& here) {
-    const double low = std::max(constant_.least, value - constant_.step);
+  driver::Result<std::pair<double, double>> step_from(double value, const ReplayError& here) {
+    const double low = std::max(constant_.min_value, value - constant_.step);
     const double high = value + constant_.step;
     auto below = at(low), above = at(high);
     if (!below) return below.error();
@@ -90,31 +90,31 @@ class Remedy {
     for (std::size_t w = 0; w < above->error_B.size(); ++w) {
       above->error_B[w] = (above->error_B[w] - below->error_B[w]) / (high - low);
     }
-    const double slope = dot(relive_.windows(), *above, *above);
-    const double along = dot(relive_.windows(), *above, here);
+    const double slope = dot(replay_.windows(), *above, *above);
+    const double along = dot(replay_.windows(), *above, here);
     if (!(slope > 0) || !(here.square > 0)) return std::pair{0.0, 0.0};
     return std::pair{-along / slope, along * along / (slope * here.square)};
   }
 
-  Relive& relive_;
+  Replay& replay_;
   const scene::ArmFile& file_;
   const TwinConstant& constant_;
-  Relived& now_;
+  ReplayError& now_;
 };
 
-void find_axes(const Relive& relive, const Relived& relived, TwinComparison& found) {
+void find_axes(const Replay& replay, const ReplayError& replayed, TwinComparison& found) {
   Eigen::Vector3d error(0, 0, 0), motion(0, 0, 0);
-  const Eigen::Matrix3d& R_WB = relive.motion().R_WB;
-  const auto& windows = relive.windows();
+  const Eigen::Matrix3d& R_WB = replay.motion().R_WB;
+  const auto& windows = replay.windows();
   for (std::size_t w = 0; w < windows.size(); ++w) {
     for (std::size_t j = 0; j < windows[w].seen.size(); ++j) {
       if (!windows[w].seen[j]) continue;
       const auto k = static_cast<Eigen::Index>(j);
-      error += (R_WB * relived.error_B[w].col(k)).cwiseAbs2();
+      error += (R_WB * replayed.error_B[w].col(k)).cwiseAbs2();
       motion += (R_WB * windows[w].motion_B.col(k)).cwiseAbs2();
     }
   }
-  const auto count = static_cast<double>(relived.count);
+  const auto count = static_cast<double>(replayed.count);
   for (int i = 0; i < 3; ++i) {
     TwinAxis& axis = found.axes[static_cast<std::size_t>(i)];
     axis.name = "xyz"[i];
@@ -127,9 +127,9 @@ void find_axes(const Relive& relive, const Relived& relived, TwinComparison& fou
 
 /// Averages the power of all windows, each under a bell, like Welch; ticks without a report hold
 /// the last.
-void find_spectrum(const Relive& relive, const Relived& relived, TwinComparison& found) {
-  const std::size_t n = relive.ticks() - 1;
-  const Eigen::Matrix3d& R_WB = relive.motion().R_WB;
+void find_spectrum(const Replay& replay, const ReplayError& replayed, TwinComparison& found) {
+  const std::size_t n = replay.ticks() - 1;
+  const Eigen::Matrix3d& R_WB = replay.motion().R_WB;
   std::vector<double> bell(n);
   double area = 0;
   for (std::size_t j = 0; j < n; ++j) {
@@ -140,7 +140,7 @@ void find_spectrum(const Relive& relive, const Relived& relived, TwinComparison&
   found.spectrum.resize(n / 2);
   for (std::size_t k = 0; k < n / 2; ++k) {
     found.spectrum[k].frequency =
-        static_cast<double>(k) / (static_cast<double>(n) * relive.motion().dt);
+        static_cast<double>(k) / (static_cast<double>(n) * replay.motion().dt);
   }
   Eigen::FFT<double> fft;
   std::vector<double> signal(n);
@@ -155,13 +155,13 @@ void find_spectrum(const Relive& relive, const Relived& relived, TwinComparison&
     fft.fwd(lines, signal);
     for (std::size_t k = 0; k < n / 2; ++k) {
       (found.spectrum[k].*into)[static_cast<std::size_t>(axis)] +=
-          std::norm(2.0 * lines[k] / area) / static_cast<double>(relive.windows().size());
+          std::norm(2.0 * lines[k] / area) / static_cast<double>(replay.windows().size());
     }
   };
-  for (std::size_t w = 0; w < relive.windows().size(); ++w) {
+  for (std::size_t w = 0; w < replay.windows().size(); ++w) {
     for (int axis = 0; axis < 3; ++axis) {
-      const TwinWindow& window = relive.windows()[w];
-      add(relived.error_B[w], window.seen, axis, &TwinSpectrum::error);
+      const TwinWindow& window = replay.windows()[w];
+      add(replayed.error_B[w], window.seen, axis, &TwinSpectrum::error);
       add(window.motion_B, window.seen, axis, &TwinSpectrum::motion);
     }
   }
@@ -186,13 +186,13 @@ namespace {
 constexpr double kNearSteps = 1.15;
 // Min. share of the error that each further constant must remove.
 constexpr double kFurther = 0.1;
-constexpr int kTogetherMost = 4;
+constexpr int kTogetherMax = 4;
 
 /// Changes constants one after the other, always the one with the largest improvement, starting
 /// with the best single one, until the twin is near. Sets `file` to the arm with all of them.
 /// Returns each constant with its final value.
-std::vector<TwinRemedy> mend_together(Relive& relive, double step_error, const TwinRemedy& first,
-                                      scene::ArmFile& file) {
+std::vector<TwinRemedy> combine_remedies(Replay& replay, double step_error, const TwinRemedy& first,
+                                         scene::ArmFile& file) {
   const std::vector<TwinConstant> constants = twin_constants(file);
   std::vector<TwinRemedy> together{first};
   const auto set = [&](const TwinRemedy& remedy) {
@@ -201,8 +201,8 @@ std::vector<TwinRemedy> mend_together(Relive& relive, double step_error, const T
     }
   };
   set(first);
-  for (int round = 1; round < kTogetherMost; ++round) {
-    auto now = relive(file);
+  for (int round = 1; round < kTogetherMax; ++round) {
+    auto now = replay(file);
     if (!now) break;
     const double before = now->rms();
     if (before < kNearSteps * step_error) break;
@@ -210,7 +210,7 @@ std::vector<TwinRemedy> mend_together(Relive& relive, double step_error, const T
     best.error_rms = before;
     for (const TwinConstant& constant : constants) {
       // With wrong values of other constants, the arm may be impossible to simulate.
-      auto remedy = Remedy(relive, file, constant, *now).find();
+      auto remedy = Remedy(replay, file, constant, *now).find();
       if (remedy && remedy->error_rms < best.error_rms) best = std::move(remedy).value();
     }
     if (best.key.empty() || !(best.error_rms < (1 - kFurther) * before)) break;
@@ -233,30 +233,30 @@ driver::Result<TwinResult> compare_twin(const session::Recording& recording,
                                         const scene::ArmFile& file, const TwinOptions& options) {
   const auto motion = twin_motion(recording, file, options.span);
   if (!motion) return motion.error();
-  auto relive = Relive::make(*motion, options.window);
-  if (!relive) return relive.error();
-  auto relived = (*relive)(file);
-  if (!relived) return relived.error();
+  auto replay = Replay::make(*motion, options.window);
+  if (!replay) return replay.error();
+  auto replayed = (*replay)(file);
+  if (!replayed) return replayed.error();
   TwinComparison found;
   found.step_error = motion->step_error;
-  found.seconds = static_cast<double>(relive->windows().size()) * options.window;
-  found.told = motion->told;
+  found.seconds = static_cast<double>(replay->windows().size()) * options.window;
+  found.messages = motion->messages;
   for (const TwinConstant& constant : twin_constants(file)) {
-    auto remedy = Remedy(*relive, file, constant, *relived).find();
+    auto remedy = Remedy(*replay, file, constant, *replayed).find();
     if (!remedy) return remedy.error();
     found.remedies.push_back(std::move(remedy).value());
   }
-  found.error_rms = relived->rms();
+  found.error_rms = replayed->rms();
   for (TwinRemedy& remedy : found.remedies) {
     remedy.expected = std::min(remedy.expected, found.error_rms);
     if (remedy.error_rms < found.error_rms) continue;
     remedy.best = remedy.value;
     remedy.error_rms = found.error_rms;
   }
-  find_axes(*relive, *relived, found);
-  find_spectrum(*relive, *relived, found);
-  TwinTrace trace{.windows = relive->windows(),
-                  .relived = std::move(relived).value(),
+  find_axes(*replay, *replayed, found);
+  find_spectrum(*replay, *replayed, found);
+  TwinTrace trace{.windows = replay->windows(),
+                  .replayed = std::move(replayed).value(),
                   .dt = motion->dt,
                   .R_WB = motion->R_WB};
   std::stable_sort(
@@ -264,10 +264,11 @@ driver::Result<TwinResult> compare_twin(const session::Recording& recording,
       [](const TwinRemedy& a, const TwinRemedy& b) { return a.error_rms < b.error_rms; });
   TwinForces forces = twin_forces(*motion, file);
   if (found.has_remedy()) {
-    scene::ArmFile mended = file;
-    auto together = mend_together(*relive, found.step_error, found.remedies.front(), mended);
+    scene::ArmFile corrected = file;
+    auto together = combine_remedies(*replay, found.step_error, found.remedies.front(), corrected);
     if (together.size() > 1) found.together = std::move(together);
-    forces.constants_explain = forces.other_acted() && !twin_forces(*motion, mended).other_acted();
+    forces.constants_explain =
+        forces.other_acted() && !twin_forces(*motion, corrected).other_acted();
   }
   return TwinResult{
       .comparison = std::move(found), .forces = std::move(forces), .trace = std::move(trace)};

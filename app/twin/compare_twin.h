@@ -6,7 +6,7 @@
 
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_file.h"
-#include "twin/relive.h"
+#include "twin/replay.h"
 #include "twin/twin_forces.h"
 #include "twin/twin_motion.h"
 
@@ -58,7 +58,7 @@ struct TwinComparison {
   /// all.
   std::vector<TwinRemedy> together;
   std::vector<TwinSpectrum> spectrum;
-  std::vector<std::string> told;  ///< Messages about the recording, a sentence each.
+  std::vector<std::string> messages;  ///< Messages about the recording, a sentence each.
 
   /// Returns the share of the motion that is missed even with the best constant, 0 to 1 or more.
   double missed() const;
@@ -76,7 +76,7 @@ struct TwinComparison {
 /// Data for the pictures.
 struct TwinTrace {
   std::vector<TwinWindow> windows;
-  Relived relived;
+  ReplayError replayed;
   double dt = 0;  ///< s between ticks
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
 };
@@ -90,7 +90,7 @@ struct TwinResult {
 
 /// Replays a recording on the simulated arm of a file, and finds the error and the constant that
 /// explains it. Each constant in turn takes the value of smallest error, found by central
-/// differences and Gauss-Newton steps. Each step is verified. Fails like twin_motion and Relive.
+/// differences and Gauss-Newton steps. Each step is verified. Fails like twin_motion and Replay.
 /// Real-time: never from the servo thread.
 driver::Result<TwinResult> compare_twin(const session::Recording& recording,
                                         const scene::ArmFile& file, const TwinOptions& options);

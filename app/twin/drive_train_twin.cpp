@@ -62,9 +62,9 @@ class DriveTrainTwin final : public TwinMover {
   /// Returns the actual currents at the beginning of tick `begin`, A.
   Eigen::Vector3d currents_at(const std::vector<TwinSample>& samples, std::size_t begin) const {
     const double lag = train_.current_lag;
-    const Eigen::Vector3d most = Eigen::Vector3d::Constant(current_max_);
+    const Eigen::Vector3d limit = Eigen::Vector3d::Constant(current_max_);
     const auto asked = [&](std::size_t k, std::size_t late) -> Eigen::Vector3d {
-      return sent(samples, k, late).cwiseMax(-most).cwiseMin(most);
+      return sent(samples, k, late).cwiseMax(-limit).cwiseMin(limit);
     };
     if (!(lag > 0)) return asked(begin - 1, delay_.whole);
     const double part = math::exp(-1e-9 * static_cast<double>(delay_.part_ns) / lag);
@@ -126,7 +126,7 @@ driver::Result<std::unique_ptr<TwinMover>> make_with(const TwinMotion& motion,
 template <class Geometry>
 driver::Result<std::unique_ptr<TwinMover>> make_of(const TwinMotion& motion,
                                                    const scene::ArmFile& file) {
-  return file.simulated.drive_train.joints_rub()
+  return file.simulated.drive_train.has_joint_friction()
              ? make_with<Geometry, device_sim::LinkedTip>(motion, file)
              : make_with<Geometry, device_sim::PointTip>(motion, file);
 }

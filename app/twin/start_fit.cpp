@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/relive.h"
+#include "twin/replay.h"
 
 namespace thimble::twin {
 namespace {
@@ -11,7 +11,8 @@ namespace {
 using Numbers = Eigen::Matrix<double, StartFit::kNumbers, 1>;
 
 constexpr int kRounds = 6;  // max. rounds of Gauss-Newton
-constexpr int kAnew = 3;    // max. number of times that the first fit computes its differences
+constexpr int kRecomputedMax =
+    3;                      // max. number of times that the first fit computes its differences
 constexpr int kHalves = 2;  // halvings of a step without improvement
 constexpr double kSettled = 1e-4;  // share of the squared error; a smaller gain ends the search
 // Share of each diagonal element; needed for cables too stiff to show their rate
@@ -76,21 +77,21 @@ void StartFit::differ(TwinMover& mover, const TwinMotion& motion, const TwinWind
         of_reports(error_of(mover, motion, window, moved(window.start, by)), window.seen) - here;
   }
   Eigen::Matrix<double, kNumbers, kNumbers> normal = slopes_.transpose() * slopes_;
-  const double most = normal.diagonal().maxCoeff();
-  normal.diagonal().array() += kRidge * most;
+  const double largest = normal.diagonal().maxCoeff();
+  normal.diagonal().array() += kRidge * largest;
   normal_.compute(normal);
 }
 
 Eigen::Matrix3Xd StartFit::operator()(TwinMover& mover, const TwinMotion& motion,
-                                      TwinWindow& window, Eigen::Vector3d& least) {
+                                      TwinWindow& window, Eigen::Vector3d& lowest_square) {
   Eigen::Matrix3Xd best = error_of(mover, motion, window, window.start);
   Eigen::VectorXd reports = of_reports(best, window.seen);
-  int anew = slopes_.size() == 0 ? kAnew : 0;
+  int recomputations = slopes_.size() == 0 ? kRecomputedMax : 0;
   bool old = true;
   for (int round = 0; round < kRounds; ++round) {
-    if (old && anew > 0) {
+    if (old && recomputations > 0) {
       differ(mover, motion, window, best);
-      --anew;
+      --recomputations;
     }
     old = true;
     Numbers by = -normal_.solve(slopes_.transpose() * reports);
@@ -107,13 +108,13 @@ Eigen::Matrix3Xd StartFit::operator()(TwinMover& mover, const TwinMotion& motion
       best = std::move(error);
       reports = std::move(there);
     }
-    if (gained < kSettled && anew == 0) break;
+    if (gained < kSettled && recomputations == 0) break;
     // Differences whose prediction was good are kept.
     old = gained < 0.5;
   }
-  least.setZero();
+  lowest_square.setZero();
   for (std::size_t j = 0; j < window.seen.size(); ++j) {
-    if (window.seen[j]) least += best.col(static_cast<Eigen::Index>(j)).cwiseAbs2();
+    if (window.seen[j]) lowest_square += best.col(static_cast<Eigen::Index>(j)).cwiseAbs2();
   }
   return best;
 }

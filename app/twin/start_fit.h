@@ -22,9 +22,9 @@ class StartFit {
   static constexpr int kNumbers = 12;
 
   /// Moves `window.start` to the best start of the mover. Returns the errors in the base, m, tick
-  /// by tick; `least`: their squares, summed over the ticks with a report, m^2.
+  /// by tick; `lowest_square`: their squares, summed over the ticks with a report, m^2.
   Eigen::Matrix3Xd operator()(TwinMover& mover, const TwinMotion& motion, TwinWindow& window,
-                              Eigen::Vector3d& least);
+                              Eigen::Vector3d& lowest_square);
 
  private:
   using Numbers = Eigen::Matrix<double, kNumbers, 1>;

@@ -33,7 +33,7 @@ void add_drive_train(const scene::ArmFile& file, std::vector<TwinConstant>& all)
         {.key = "simulation.drive_train.current_lag",
          .unit = "s",
          .step = 0.1 * train.current_lag,
-         .least = 0,
+         .min_value = 0,
          .get = [](const scene::ArmFile& arm) { return arm.simulated.drive_train.current_lag; },
          .set = [](scene::ArmFile& arm,
                    double to) { arm.simulated.drive_train.current_lag = to; }});
@@ -56,7 +56,7 @@ void add_drive_train(const scene::ArmFile& file, std::vector<TwinConstant>& all)
           {.key = fmt::format("simulation.drive_train.{}[{}]", one.key, i + 1),
            .unit = one.unit,
            .step = kPart * value,
-           .least = 0.1 * value,
+           .min_value = 0.1 * value,
            .get = [member = one.member,
                    i](const scene::ArmFile& arm) { return (arm.simulated.drive_train.*member)[i]; },
            .set = [member = one.member, i](
@@ -74,26 +74,26 @@ std::vector<TwinConstant> twin_constants(const scene::ArmFile& file) {
   all.push_back({.key = "simulation.tip.mass",
                  .unit = "kg",
                  .step = kPart * plant.mass,
-                 .least = 0.1 * plant.mass,
+                 .min_value = 0.1 * plant.mass,
                  .get = [](const scene::ArmFile& arm) { return arm.simulated.plant.mass; },
                  .set = [](scene::ArmFile& arm, double to) { arm.simulated.plant.mass = to; }});
   all.push_back({.key = "simulation.tip.viscous",
                  .unit = "N s/m",
                  .step = std::max(0.1 * plant.viscous, 1e-4),
-                 .least = 0,
+                 .min_value = 0,
                  .get = [](const scene::ArmFile& arm) { return arm.simulated.plant.viscous; },
                  .set = [](scene::ArmFile& arm, double to) { arm.simulated.plant.viscous = to; }});
   all.push_back({.key = "simulation.tip.coulomb",
                  .unit = "N",
                  .step = std::max(kPart * plant.coulomb, 1e-4),
-                 .least = 0,
+                 .min_value = 0,
                  .get = [](const scene::ArmFile& arm) { return arm.simulated.plant.coulomb; },
                  .set = [](scene::ArmFile& arm, double to) { arm.simulated.plant.coulomb = to; }});
   all.push_back(
       {.key = "simulation.tip.weight",
        .unit = "N",
        .step = 1e-3,
-       .least = 0,
+       .min_value = 0,
        .get = [](const scene::ArmFile& arm) { return arm.simulated.weight_B.dot(down_B(arm)); },
        .set = [](scene::ArmFile& arm, double to) { arm.simulated.weight_B = to * down_B(arm); }});
   for (std::size_t i = 0; i < 3; ++i) {
@@ -102,7 +102,7 @@ std::vector<TwinConstant> twin_constants(const scene::ArmFile& file) {
         {.key = fmt::format("joints.torque_constant[{}]", i + 1),
          .unit = "N m/A",
          .step = kPart * torque_constant,
-         .least = 0,
+         .min_value = 0,
          .get = [i](const scene::ArmFile& arm) { return arm.model.drives[i].torque_constant; },
          .set = [i](scene::ArmFile& arm, double to) { arm.model.drives[i].torque_constant = to; }});
   }
@@ -110,7 +110,7 @@ std::vector<TwinConstant> twin_constants(const scene::ArmFile& file) {
   all.push_back({.key = "simulation.wire.delay_in + delay_out",
                  .unit = "s",
                  .step = 5e-5,
-                 .least = 0,
+                 .min_value = 0,
                  .get =
                      [](const scene::ArmFile& arm) {
                        const auto& wire = arm.simulated.wire;

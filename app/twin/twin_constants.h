@@ -13,7 +13,7 @@ struct TwinConstant {
   std::string key;                                   ///< Key in the file.
   std::string unit;                                  ///< SI
   double step = 0;                                   ///< Step for differences, in its unit.
-  double least = 0;                                  ///< Lower bound.
+  double min_value = 0;                              ///< Lower bound.
   std::function<double(const scene::ArmFile&)> get;  ///< Returns the value.
   std::function<void(scene::ArmFile&, double)> set;  ///< Sets another value.
 };

@@ -31,7 +31,7 @@ std::string error_table(const TwinTrace& trace) {
       if (!trace.windows[w].seen[j]) continue;
       count += 1;
       square +=
-          (trace.R_WB * trace.relived.error_B[w].col(static_cast<Eigen::Index>(j))).cwiseAbs2();
+          (trace.R_WB * trace.replayed.error_B[w].col(static_cast<Eigen::Index>(j))).cwiseAbs2();
     }
     const Eigen::Vector3d rms = kMicro * (square / count).cwiseSqrt();
     text << trace.windows[w].time << ' ' << rms.x() << ' ' << rms.y() << ' ' << rms.z() << '\n';
@@ -56,10 +56,10 @@ std::string spectrum_table(const TwinComparison& comparison) {
 /// The window with the largest error.
 std::size_t worst_window(const TwinTrace& trace) {
   std::size_t worst = 0;
-  double most = -1;
+  double largest = -1;
   for (std::size_t w = 0; w < trace.windows.size(); ++w) {
-    const double square = trace.relived.error_B[w].squaredNorm();
-    if (square > most) most = square, worst = w;
+    const double square = trace.replayed.error_B[w].squaredNorm();
+    if (square > largest) largest = square, worst = w;
   }
   return worst;
 }
@@ -74,7 +74,7 @@ std::string motion_table(const TwinTrace& trace) {
     if (!trace.windows[w].seen[j]) continue;
     const auto k = static_cast<Eigen::Index>(j);
     const Eigen::Vector3d recorded = 1e3 * trace.R_WB * trace.windows[w].motion_B.col(k);
-    const Eigen::Vector3d twin = recorded + 1e3 * trace.R_WB * trace.relived.error_B[w].col(k);
+    const Eigen::Vector3d twin = recorded + 1e3 * trace.R_WB * trace.replayed.error_B[w].col(k);
     text << trace.windows[w].time + static_cast<double>(j) * trace.dt;
     for (int i = 0; i < 3; ++i) text << ' ' << recorded[i];
     for (int i = 0; i < 3; ++i) text << ' ' << twin[i];
@@ -130,12 +130,12 @@ driver::Result<void> draw(const std::string& title, const std::filesystem::path&
 
 }  // namespace
 
-std::vector<session::Figure> twin_figures(const TwinComparison& found, double fit_least) {
+std::vector<session::Figure> twin_figures(const TwinComparison& found, double min_fit) {
   std::vector<session::Figure> figures;
   for (const TwinAxis& axis : found.axes) {
     const bool moved = !std::isnan(axis.fit);
     figures.push_back({fmt::format("fit_{}", axis.name), moved ? axis.fit : 0, "%",
-                       moved && fit_least > 0 ? fmt::format(">= {:g}", fit_least) : "",
+                       moved && min_fit > 0 ? fmt::format(">= {:g}", min_fit) : "",
                        moved ? "100 (1 - error / motion)" : "the axis did not move"});
     figures.push_back(
         {fmt::format("error_{}", axis.name), kMicro * axis.error_rms, "um", "", "RMS"});

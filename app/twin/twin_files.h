@@ -11,9 +11,9 @@
 namespace thimble::twin {
 
 /// Returns a comparison as figures: fit and error of each axis, the total error, the part of it due
-/// to the encoders' steps, and the error with the best constant. `fit_least`: percent that each
+/// to the encoders' steps, and the error with the best constant. `min_fit`: percent that each
 /// axis that moved must reach; 0: no goal.
-std::vector<session::Figure> twin_figures(const TwinComparison& comparison, double fit_least);
+std::vector<session::Figure> twin_figures(const TwinComparison& comparison, double min_fit);
 
 /// Returns a comparison as text: a line per axis, the constants in the order of their improvement,
 /// and a sentence that names the first or reports that none stands out.

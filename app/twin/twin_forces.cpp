@@ -125,19 +125,19 @@ std::vector<Vector3d> pulls_of(const std::vector<TwinSample>& stretch, const Twi
 /// acceleration is m (x'' - C c''), in which damping of cables and derivatives of friction are
 /// neglected: below 20 Hz they are a hundredth.
 struct CablesInPose {
-  Eigen::Matrix3d rotors, rubbing, give;
+  Eigen::Matrix3d rotors, rubbing, compliance;
 
   CablesInPose(const device_sim::DriveTrainSettings& train, const Eigen::Matrix3d& G)
       : rotors(G.transpose() * train.inertia.asDiagonal() * G),
         rubbing(G.transpose() * train.viscous.asDiagonal() * G) {
     const Eigen::Matrix3d J = G.inverse();
-    give = J * train.stiffness.cwiseInverse().asDiagonal() * J.transpose();
+    compliance = J * train.stiffness.cwiseInverse().asDiagonal() * J.transpose();
   }
 
   /// Returns the force that motion needs in addition to that of a rigid arm, N in the base.
   Vector3d needed(const Piece& piece, double mass) const {
     return rotors * piece.a + rubbing * piece.v -
-           mass * (give * (piece.motors_second - rotors * piece.fourth));
+           mass * (compliance * (piece.motors_second - rotors * piece.fourth));
   }
 };
 
@@ -216,7 +216,7 @@ double noise_of(const Bump& bump, double mass, const device_sim::DriveTrainSetti
   if (train.compliant()) {
     const CablesInPose cables(train, motion.stretches.front().front().G);
     of_second += cables.rotors.trace() / 3;
-    of_fourth = mass * (cables.give * cables.rotors).trace() / 3;
+    of_fourth = mass * (cables.compliance * cables.rotors).trace() / 3;
   }
   double square = 0;
   for (std::size_t k = 0; k < bump.second.size(); ++k) {
@@ -262,7 +262,7 @@ TwinForces twin_forces(const TwinMotion& motion, const scene::ArmFile& file) {
       Vector3d needed_B = plant.mass * piece.a + plant.viscous * piece.v +
                           plant.coulomb * piece.direction - file.simulated.weight_B;
       if (soft) needed_B += CablesInPose(train, stretch[k].G).needed(piece, plant.mass);
-      if (train.joints_rub())
+      if (train.has_joint_friction())
         needed_B += rubbed(train, stretch, k, bump, motion.dt, motion.step_error);
       const Vector3d other_B = needed_B - piece.motors;
       fit.add(piece, other_B);

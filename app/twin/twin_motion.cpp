@@ -140,8 +140,8 @@ class Reader {
   }
 
   void close() {
-    const auto least = static_cast<std::size_t>(2 * TwinMotion::kLead / motion_.dt);
-    if (stretch_.size() > least) motion_.stretches.push_back(std::move(stretch_));
+    const auto min_samples = static_cast<std::size_t>(2 * TwinMotion::kLead / motion_.dt);
+    if (stretch_.size() > min_samples) motion_.stretches.push_back(std::move(stretch_));
     stretch_.clear();
   }
 
@@ -169,10 +169,10 @@ class Reader {
     }
     motion_.step_error = std::sqrt(step_square_ / static_cast<double>(taken_));
     for (std::string& sentence : unseen_differences(recorded_, file_)) {
-      motion_.told.push_back(std::move(sentence));
+      motion_.messages.push_back(std::move(sentence));
     }
     if (!recording_.complete) {
-      motion_.told.push_back("The recording is truncated; only the existing part is compared.");
+      motion_.messages.push_back("The recording is truncated; only the existing part is compared.");
     }
     return std::move(motion_);
   }

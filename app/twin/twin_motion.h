@@ -25,8 +25,9 @@ struct TwinMotion {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the base in the world.
   /// Stretches without a missing tick, in which forces were sent; none is shorter than kLead.
   std::vector<std::vector<TwinSample>> stretches;
-  double step_error = 0;          ///< RMS error of an axis that the encoders' steps cause, m.
-  std::vector<std::string> told;  ///< Messages about the recording for the user, a sentence each.
+  double step_error = 0;  ///< RMS error of an axis that the encoders' steps cause, m.
+  std::vector<std::string>
+      messages;  ///< Messages about the recording for the user, a sentence each.
 
   /// Max. delay of a twin's forces, s: this part of a stretch precedes its first window.
   static constexpr double kLead = 0.025;

@@ -15,7 +15,7 @@ namespace thimble::twin {
 namespace {
 
 constexpr double kRate = 1000;  // Hz, rate of identification and recording
-constexpr int kTriesMost = 64;  // max. number of tries of a stiffness [chosen]: half of them is
+constexpr int kTriesMax = 64;   // max. number of tries of a stiffness [chosen]: half of them is
                                 // known to a sixteenth, which is one deviation
 constexpr int kClear = 8;       // majority after which no further one is tried
 constexpr double kSpeed = 0.2, kSpeedSpan = 0.1;  // m/s, mean speed of the hand and range of starts
@@ -26,7 +26,7 @@ class WallStarts {
   WallStarts(const scene::ArmFile& arm, const stability::ArmDirection& direction)
       : arm_(arm),
         direction_(direction),
-        carried_(stability::carried_by(arm, stability::loop_times(arm, kRate), 1000, 0)),
+        carried_(stability::stability_limits(arm, stability::loop_times(arm, kRate), 1000, 0)),
         quiet_(stability::kQuietAtRest + stability::kQuietSteps * carried_.tip.encoder_step) {}
 
   /// Returns the stiffness by the law, N/m.
@@ -36,7 +36,7 @@ class WallStarts {
   /// this stiffness (N/m).
   driver::Result<bool> mostly_rest(double stiffness) const {
     int more = 0;  // number of starts that rest minus those that do not
-    for (int i = 0; i < kTriesMost && std::abs(more) < kClear; ++i) {
+    for (int i = 0; i < kTriesMax && std::abs(more) < kClear; ++i) {
       const auto touch = from(i, stiffness);
       if (!touch) return touch.error();
       more += stability::comes_to_rest(*touch, quiet_) ? 1 : -1;
@@ -65,7 +65,7 @@ class WallStarts {
 
   const scene::ArmFile& arm_;
   const stability::ArmDirection& direction_;
-  stability::Carried carried_;
+  stability::StabilityLimits carried_;
   double quiet_;  // m
 };
 

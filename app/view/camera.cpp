@@ -115,10 +115,10 @@ std::vector<Eigen::Vector3d> framed_points(const DrawnScene& scene, const DrawnM
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& point : points) box.extend(point);
   // Minimum size of the framed box: a field has no size, so the tip would fill the picture.
-  constexpr double kLeast = 0.1;  // m
+  constexpr double kMin = 0.1;  // m
   if (box.isEmpty()) box.extend(Eigen::Vector3d(0, 0, 0));
-  if (box.sizes().maxCoeff() < kLeast) {
-    for (const double end : {-kLeast / 2, kLeast / 2}) {
+  if (box.sizes().maxCoeff() < kMin) {
+    for (const double end : {-kMin / 2, kMin / 2}) {
       for (int k = 0; k < 3; ++k) {
         points.emplace_back(box.center() + end * Eigen::Vector3d::Unit(k));
       }

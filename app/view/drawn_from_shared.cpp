@@ -29,7 +29,7 @@ DrawnObject drawn_object(const session::SharedScene& scene,
                          const session::SharedScene::Object& object) {
   DrawnObject drawn;
   drawn.name = object.name;
-  drawn.stands_for_shape = object.kind == session::SharedKind::kShape;
+  drawn.is_placeholder = object.kind == session::SharedKind::kShape;
   drawn.field = object.kind == session::SharedKind::kField;
   drawn.crease_angle = object.crease_angle;
   drawn.texture = object.texture;
@@ -42,7 +42,7 @@ DrawnObject drawn_object(const session::SharedScene& scene,
                                     static_cast<std::int32_t>(b - object.first_vertex),
                                     static_cast<std::int32_t>(c - object.first_vertex)});
   }
-  drawn.endless = drawn.stands_for_shape && is_flat(drawn.mesh);
+  drawn.endless = drawn.is_placeholder && is_flat(drawn.mesh);
   return drawn;
 }
 

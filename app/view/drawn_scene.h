@@ -16,13 +16,13 @@ namespace thimble::view {
 /// One object as drawn; a field has a mesh without triangles.
 struct DrawnObject {
   std::string name;
-  render::TriangleMesh mesh;      ///< In W before the first tick, m.
-  double crease_angle = 0.87;     ///< Edges sharper than this stay sharp, rad.
-  bool stands_for_shape = false;  ///< Its triangles are not those of the contact.
-  std::string texture{};          ///< Name of its texture; empty: none.
-  std::string friction{};         ///< Name of its friction; empty: none.
-  bool endless = false;           ///< A plane: drawn, but not framed by the camera.
-  bool field = false;             ///< Acts everywhere and has no triangles.
+  render::TriangleMesh mesh;    ///< In W before the first tick, m.
+  double crease_angle = 0.87;   ///< Edges sharper than this stay sharp, rad.
+  bool is_placeholder = false;  ///< Its triangles are not those of the contact.
+  std::string texture{};        ///< Name of its texture; empty: none.
+  std::string friction{};       ///< Name of its friction; empty: none.
+  bool endless = false;         ///< A plane: drawn, but not framed by the camera.
+  bool field = false;           ///< Acts everywhere and has no triangles.
 };
 
 /// The force of a scene's fields on a tip at rest.

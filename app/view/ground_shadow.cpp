@@ -27,9 +27,9 @@ Eigen::AlignedBox2i ground_shadow(const Eigen::Matrix4f& view_projection,
   }
   // One pixel more on each side, because the corners are rounded.
   const Eigen::Array2f pixels = size.cast<float>().array();
-  const Eigen::Array2f most = pixels + 1;
+  const Eigen::Array2f max = pixels + 1;
   const auto pixel = [&](const Eigen::Vector2f& at) -> Eigen::Array2f {
-    return (pixels * (0.5F * at.array() + 0.5F)).max(-1).min(most);
+    return (pixels * (0.5F * at.array() + 0.5F)).max(-1).min(max);
   };
   const Eigen::Array2f low = pixel(seen.min()).floor() - 1;
   const Eigen::Array2f high = pixel(seen.max()).ceil() + 1;

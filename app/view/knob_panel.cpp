@@ -15,7 +15,7 @@ namespace {
 
 /// The display unit of a knob: one for all its values, so that it does not change during a drag.
 ReadUnit unit_of(const session::SharedScene::Knob& knob) {
-  ReadUnit unit = read_unit(knob.unit, std::max(std::abs(knob.least), std::abs(knob.most)));
+  ReadUnit unit = read_unit(knob.unit, std::max(std::abs(knob.min), std::abs(knob.max)));
   if (unit.name == nullptr) unit.name = knob.unit.c_str();
   return unit;
 }
@@ -24,8 +24,8 @@ ReadUnit unit_of(const session::SharedScene::Knob& knob) {
 
 bool knob_slider(const session::SharedScene::Knob& knob, double& value) {
   const ReadUnit unit = unit_of(knob);
-  const double least = knob.least / unit.size;
-  const double most = knob.most / unit.size;
+  const double least = knob.min / unit.size;
+  const double most = knob.max / unit.size;
   // A range of more than two powers of ten gets a logarithmic slider. ImGui rounds values below the
   // last digit of the format to zero, so the format has enough digits for the smallest.
   const bool wide = least > 0 && most > 100 * least;
@@ -42,7 +42,7 @@ bool knob_slider(const session::SharedScene::Knob& knob, double& value) {
   if (!typed && ImGui::IsItemHovered() && !ImGui::IsItemActive()) {
     ImGui::SetTooltip("%.4g to %.4g %s; ctrl-click to type", least, most, unit.name);
   }
-  if (turned) value = std::clamp(shown * unit.size, knob.least, knob.most);
+  if (turned) value = std::clamp(shown * unit.size, knob.min, knob.max);
   return turned;
 }
 

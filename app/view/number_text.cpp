@@ -20,9 +20,9 @@ std::string six(double value, int digits, const char* unit) {
 
 }  // namespace
 
-ReadUnit read_unit(const std::string& unit, double most) {
-  if (unit == "m") return most < 1e-3 ? ReadUnit{"um", 1e-6} : ReadUnit{"mm", 1e-3};
-  if (unit == "N" && most < kMillinewtons) return {"mN", 1e-3};
+ReadUnit read_unit(const std::string& unit, double max) {
+  if (unit == "m") return max < 1e-3 ? ReadUnit{"um", 1e-6} : ReadUnit{"mm", 1e-3};
+  if (unit == "N" && max < kMillinewtons) return {"mN", 1e-3};
   return {nullptr, 1};
 }
 

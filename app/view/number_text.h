@@ -12,7 +12,7 @@ struct ReadUnit {
 
 /// Returns a readable unit for a length (m) or a force (N) with largest value `most`: um below 1
 /// mm, mm above, mN below 0.1 N, N above. Other units stay unchanged.
-ReadUnit read_unit(const std::string& unit, double most);
+ReadUnit read_unit(const std::string& unit, double max);
 
 /// Returns a length (m) or a force (N) as text with a fixed number of characters, so that a
 /// changing number does not move: " 1.23 mm", "123.4 um", "-0.40 N ". A number that is not finite

@@ -55,21 +55,21 @@ void explain(const char* what, const std::string& why) {
   ImGui::EndTooltip();
 }
 
-void RunButtons::tell(const driver::Result<void>& asked) {
-  if (!asked) told_ = asked.error().message;
+void RunButtons::keep_error(const driver::Result<void>& asked) {
+  if (!asked) message_ = asked.error().message;
 }
 
-std::string RunButtons::take_told() {
-  return std::exchange(told_, {});
+std::string RunButtons::take_message() {
+  return std::exchange(message_, {});
 }
 
 void RunButtons::step(session::SharedReader& reader, bool shift, bool ctrl) {
-  tell(reader.ask_steps(ctrl ? 100 : shift ? 10 : 1));
+  keep_error(reader.ask_steps(ctrl ? 100 : shift ? 10 : 1));
 }
 
 void RunButtons::save(const session::SharedReader& reader) {
   const auto saved = session::save_knobs(reader);
-  told_ = saved ? "Saved: " + saved->text() : saved.error().message;
+  message_ = saved ? "Saved: " + saved->text() : saved.error().message;
 }
 
 void RunButtons::draw(session::SharedReader& reader) {
@@ -77,7 +77,7 @@ void RunButtons::draw(session::SharedReader& reader) {
   const ImGuiIO& io = ImGui::GetIO();
   Flow flow;
   if (button(flow, "Restart", "Restarts the run from its first tick (B)", no_restart)) {
-    tell(reader.ask_restart());
+    keep_error(reader.ask_restart());
   }
   if (button(flow, "Step",
              "Advances a paused run by one tick; with shift by 10, with ctrl by 100 (N)",
@@ -88,7 +88,7 @@ void RunButtons::draw(session::SharedReader& reader) {
   flow.next(ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x +
             ImGui::CalcTextSize("loop").x);
   ImGui::BeginDisabled(!no_restart.empty());
-  if (ImGui::Checkbox("loop", &loop)) tell(reader.ask_loop(loop));
+  if (ImGui::Checkbox("loop", &loop)) keep_error(reader.ask_loop(loop));
   ImGui::EndDisabled();
   explain("Restarts the run when it ends (L)", no_restart);
   const std::string no_speed = reader.why_no_speed();
@@ -101,10 +101,10 @@ void RunButtons::draw(session::SharedReader& reader) {
   ImGui::Text("speed %.2f", speed);
   ImGui::SameLine(0, gap);
   ImGui::SetNextItemWidth(-1);
-  if (ImGui::SliderScalar("##speed", ImGuiDataType_Double, &speed, &session::kSpeedLeast,
-                          &session::kSpeedMost, "",
+  if (ImGui::SliderScalar("##speed", ImGuiDataType_Double, &speed, &session::kSpeedMin,
+                          &session::kSpeedMax, "",
                           ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
-    tell(reader.ask_speed(speed));
+    keep_error(reader.ask_speed(speed));
   }
   ImGui::EndDisabled();
   explain("Multiple of real time; the ticks stay bit-identical (, and .)", no_speed);
@@ -116,31 +116,31 @@ void RunButtons::draw(session::SharedReader& reader) {
              reader.scene().knobs.empty() ? "This run has no knobs." : "")) {
     save(reader);
   }
-  if (std::string told = scenes_.draw(reader); !told.empty()) told_ = std::move(told);
+  if (std::string message = scenes_.draw(reader); !message.empty()) message_ = std::move(message);
 }
 
 void RunButtons::take_key(int key, bool shift, bool ctrl, session::SharedReader& reader) {
   switch (key) {
     case GLFW_KEY_B:
-      tell(reader.ask_restart());
+      keep_error(reader.ask_restart());
       break;
     case GLFW_KEY_N:
       step(reader, shift, ctrl);
       break;
     case GLFW_KEY_L:
-      tell(reader.ask_loop(!reader.loop_asked()));
+      keep_error(reader.ask_loop(!reader.loop_asked()));
       break;
     case GLFW_KEY_PERIOD:
-      tell(reader.ask_speed(reader.speed_asked() * kFaster));
+      keep_error(reader.ask_speed(reader.speed_asked() * kFaster));
       break;
     case GLFW_KEY_COMMA:
-      tell(reader.ask_speed(reader.speed_asked() / kFaster));
+      keep_error(reader.ask_speed(reader.speed_asked() / kFaster));
       break;
     case GLFW_KEY_O:
       if (std::string why = reader.why_no_restart(); why.empty()) {
         scenes_.toggle();
       } else {
-        told_ = std::move(why);
+        message_ = std::move(why);
       }
       break;
     case GLFW_KEY_K:

@@ -32,15 +32,15 @@ class RunButtons {
   /// down.
   void take_key(int key, bool shift, bool ctrl, session::SharedReader& reader);
   /// Returns the message about the last action, once; empty: none.
-  std::string take_told();
+  std::string take_message();
 
  private:
   void step(session::SharedReader& reader, bool shift, bool ctrl);
   void save(const session::SharedReader& reader);
-  void tell(const driver::Result<void>& asked);
+  void keep_error(const driver::Result<void>& asked);
 
   SceneMenu scenes_;
-  std::string told_;
+  std::string message_;
 };
 
 /// Returns the counters of the run as a line. Ticks that passed in a pause are listed separately

@@ -27,14 +27,14 @@ bool RunFollower::step(double dt) {
   }
   if (live_->update(*newest_)) {
     has_moment_ = true;
-    trail_.give(newest_->trail);
+    trail_.copy_to(newest_->trail);
     ring_.keep(*newest_);
   }
   if (!ring_.empty()) {
     head_.set_span(ring_.oldest(), ring_.newest());
     head_.step(dt);
     // A stopped head is at a kept moment, so that the displayed time is that of the picture.
-    if (!head_.live() && !head_.plays()) head_.settle(ring_.beside(head_.time(), 0));
+    if (!head_.live() && !head_.plays()) head_.settle(ring_.time_of_step(head_.time(), 0));
     if (!head_.live()) ring_.show(head_.time(), *then_);
   }
   if (notice_.empty()) notice_ = reader->notice();

@@ -30,8 +30,8 @@ class RunFollower final : public TouchSource {
   const std::string& notice() const override { return notice_; }
   std::string name() const override { return runs_.reader() == nullptr ? "" : runs_.name(); }
   PlayHead& head() override { return head_; }
-  double beside(int steps) const override {
-    return ring_.empty() ? 0 : ring_.beside(head_.time(), steps);
+  double time_of_step(int steps) const override {
+    return ring_.empty() ? 0 : ring_.time_of_step(head_.time(), steps);
   }
   std::string kept() const override;
   const std::vector<std::string>& about() const override { return about_; }

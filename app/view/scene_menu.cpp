@@ -77,9 +77,9 @@ SceneChoices find_scenes(const fs::path& current) {
     const fs::path& file = entry->path();
     const bool hidden = file.filename().string().starts_with('.');
     if (hidden || file.extension() != ".yaml" || listed(file) || !is_scene(file)) continue;
-    found.beside.push_back(choice_of(file.stem().string(), file));
+    found.neighbours.push_back(choice_of(file.stem().string(), file));
   }
-  std::sort(found.beside.begin(), found.beside.end(),
+  std::sort(found.neighbours.begin(), found.neighbours.end(),
             [](const SceneChoice& a, const SceneChoice& b) { return a.name < b.name; });
   return found;
 }
@@ -91,24 +91,24 @@ std::string SceneMenu::draw(session::SharedReader& reader) {
     choices_ = find_scenes(current);
     ImGui::OpenPopup("scenes");
   }
-  std::string told;
+  std::string message;
   const float most = 0.8F * ImGui::GetIO().DisplaySize.y;
   ImGui::SetNextWindowSizeConstraints({14 * ImGui::GetFontSize(), 0},
                                       {24 * ImGui::GetFontSize(), most});
-  if (!ImGui::BeginPopup("scenes")) return told;
+  if (!ImGui::BeginPopup("scenes")) return message;
   const SceneChoice* clicked = nullptr;
   for (const auto& [title, scenes] :
-       {std::pair("In this scene's folder", &choices_.beside), std::pair("Your own", &choices_.own),
-        std::pair("With Thimble", &choices_.shipped)}) {
+       {std::pair("In this scene's folder", &choices_.neighbours),
+        std::pair("Your own", &choices_.own), std::pair("With Thimble", &choices_.shipped)}) {
     if (const SceneChoice* one = draw_list(title, *scenes, current)) clicked = one;
   }
   if (clicked != nullptr) {
     const auto asked = reader.ask_restart(clicked->file.string());
-    told = asked ? "Next: " + clicked->name : asked.error().message;
+    message = asked ? "Next: " + clicked->name : asked.error().message;
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
-  return told;
+  return message;
 }
 
 }  // namespace thimble::view

@@ -19,7 +19,8 @@ struct SceneChoice {
 struct SceneChoices {
   std::vector<SceneChoice> shipped;  ///< Shipped with Thimble.
   std::vector<SceneChoice> own;      ///< The user's scenes.
-  std::vector<SceneChoice> beside;   ///< In the folder of the current scene, if not listed above.
+  std::vector<SceneChoice>
+      neighbours;  ///< In the folder of the current scene, if not listed above.
 };
 
 /// Lists the available scenes, including those in the folder of `current`. Files that are no scenes

@@ -8,7 +8,7 @@
 namespace thimble::view {
 
 /// Target of the hand from the mouse.
-struct HandWish {
+struct MouseHandTarget {
   Eigen::Vector3d p_WH{0, 0, 0};  ///< m
   bool holds = false;
 };
@@ -25,7 +25,7 @@ class SceneMouse {
   void step(Camera& camera, const Eigen::Vector3d& p_WT, const ScreenPart& part, bool hand_first);
 
   /// Returns the target of the hand.
-  const HandWish& hand() const { return hand_; }
+  const MouseHandTarget& hand() const { return hand_; }
 
  private:
   enum class Drag { kNone, kOrbit, kPan, kHand };
@@ -33,7 +33,7 @@ class SceneMouse {
   void lead(const Camera& camera, const ScreenPart& part);
 
   Drag drag_ = Drag::kNone;
-  HandWish hand_;
+  MouseHandTarget hand_;
   Eigen::Vector3d p_WGrip_{0, 0, 0};  // where the hand was taken, plus the wheel's push, m
   Eigen::Vector2d grip_{0, 0};        // pixel at which the drag began
 };

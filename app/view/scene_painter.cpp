@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "bent_mesh.h"
+#include "apply_patch.h"
 #include "view/gl/picture_parts.h"
 #include "view/ground_shadow.h"
 #include "view/overlays/force_marks.h"
@@ -106,7 +106,7 @@ void ScenePainter::place_objects(const DrawnMoment& moment, DentNormals normals)
       models_[i].bend(moment.patch);
     } else {
       naive_ = std::make_unique<SurfaceModel>(
-          session::bent(shapes_[i] ? *shapes_[i] : scene_.objects[i].mesh, {}, moment.patch),
+          session::apply_patch(shapes_[i] ? *shapes_[i] : scene_.objects[i].mesh, {}, moment.patch),
           scene_.objects[i].crease_angle, NormalWeights::kEqual);
       naive_object_ = i;
     }
@@ -272,7 +272,7 @@ void ScenePainter::paint_pixels(const PaintChoice& choice, Canvas& canvas) {
   glDepthFunc(GL_LESS);
 }
 
-void ScenePainter::paint_what_shines_through(const std::vector<Solid>& solids) {
+void ScenePainter::paint_translucent(const std::vector<Solid>& solids) {
   glUseProgram(*programs_.plain);
   glUniform1f(programs_.plain.at("nearer"), 0);
   glDepthFunc(GL_GREATER);
@@ -297,7 +297,7 @@ void ScenePainter::paint_edges(const PaintChoice& choice) {
   glDepthMask(GL_FALSE);
   glEnable(GL_LINE_SMOOTH);
   for (std::size_t i = 0; i < models_.size(); ++i) {
-    const bool few = models_[i].triangles() <= kFewTriangles && !scene_.objects[i].stands_for_shape;
+    const bool few = models_[i].triangles() <= kFewTriangles && !scene_.objects[i].is_placeholder;
     if (scene_.objects[i].endless || (choice.edges == Edges::kAuto && !few)) continue;
     set(programs_.plain, "model", places_[i]);
     set_paint(programs_.plain, kTextColour, 0.22F);
@@ -377,7 +377,7 @@ std::vector<Label> ScenePainter::paint(const DrawnMoment& moment, const Camera& 
   paint_ground(choice, canvas);
   paint_edges(choice);
   panes_.draw(marks.panes, camera, programs_.plain);
-  paint_what_shines_through(marks.solids);
+  paint_translucent(marks.solids);
   paint_pixels(choice, canvas);
   glBindVertexArray(0);
   return marks.labels;

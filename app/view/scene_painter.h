@@ -72,7 +72,7 @@ class ScenePainter {
   void paint_pixels(const PaintChoice& choice, Canvas& canvas);
   void set_shadows(const GlProgram& program, const PaintChoice& choice) const;
   void paint_solids(const std::vector<Solid>& solids);
-  void paint_what_shines_through(const std::vector<Solid>& solids);
+  void paint_translucent(const std::vector<Solid>& solids);
   void paint_edges(const PaintChoice& choice);
   void paint_ground(const PaintChoice& choice, const Canvas& canvas);
   void paint_forces(const DrawnMoment& moment, const PaintChoice& choice, double eye_distance);

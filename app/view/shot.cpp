@@ -77,7 +77,7 @@ void PlayedScene::play(const std::vector<double>& times, const Look& look) {
     trail.add(record);
     while (next < ticks.size() && record.tick >= ticks[next]) {
       if (live_->update(*moment)) {
-        trail.give(moment->trail);
+        trail.copy_to(moment->trail);
         look(*moment, plots);
       }
       ++next;

@@ -211,7 +211,7 @@ class Parts {
       child(name, std::max(rest, 2 * ImGui::GetFontSize()), content);
       ImGui::EndTabItem();
     };
-    tab("Plots", [&] { plots_in(std::max(rest, kPlotLinesLeast * ImGui::GetFontSize())); });
+    tab("Plots", [&] { plots_in(std::max(rest, kPlotLinesMin * ImGui::GetFontSize())); });
     if (source_.reader() != nullptr) tab("Knobs", [&] { draw_knobs(*source_.reader()); });
     tab("Show", [&] { draw_looks(source_.scene(), source_.reader() != nullptr, choice_); });
     ImGui::EndTabBar();
@@ -226,7 +226,7 @@ class Parts {
  private:
   // In lines of text: four readable plots, two knobs. Chosen by looking.
   static constexpr float kPlotLines = 15;
-  static constexpr float kPlotLinesLeast = 11;  // in a tab
+  static constexpr float kPlotLinesMin = 11;  // in a tab
   static constexpr float kKnobLines = 7;
 
   void plots_in(float height) { draw_plots(source_, choice_.plots, height); }

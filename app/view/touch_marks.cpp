@@ -10,8 +10,8 @@
 namespace thimble::view {
 namespace {
 
-constexpr double kThinnest = 0.05;    // N: a hand cannot feel less within the arm's own friction
-constexpr double kLeastAlong = 0.02;  // N RMS: less is not felt [PHYSICS 6]
+constexpr double kThinnest = 0.05;  // N: a hand cannot feel less within the arm's own friction
+constexpr double kAlongMin = 0.02;  // N RMS: less is not felt [PHYSICS 6]
 
 using Point = Eigen::Vector3d;
 
@@ -101,7 +101,7 @@ void add_contact(const DrawnScene& scene, const OneArm& moment, double thick, To
   const Point force = point(moment.tick.f_sent_W);
   const Point along = force - force.dot(n) * n;
   const double size = along.norm();
-  if (!(size > kLeastAlong)) return;  // NaN: no arrow
+  if (!(size > kAlongMin)) return;  // NaN: no arrow
   const Point tip = from + std::max(arrow_length(size, scene), 6 * thick) / size * along;
   arrow(tip, 0.8 * thick, kFrictionColour);
   marks.labels.push_back({tip, along / size, fmt::format("{:.2f} N", size), kFrictionColour});
@@ -123,7 +123,7 @@ void add_tip(const OneArm& moment, double thick, TouchMarks& marks) {
 }
 
 /// Returns the triangle on the other side of an edge; -1 if there is none.
-std::ptrdiff_t beside(const render::TriangleMesh& mesh, std::size_t triangle, std::size_t k) {
+std::ptrdiff_t neighbour_of(const render::TriangleMesh& mesh, std::size_t triangle, std::size_t k) {
   const auto& c = mesh.triangles[triangle];
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t j = 0; j < 3; ++j) {
@@ -141,7 +141,7 @@ void add_edge_planes(const DrawnScene& scene, const DrawnMoment& moment, TouchMa
   const auto object = static_cast<std::size_t>(moment.tick.object);
   const auto triangle = static_cast<std::size_t>(moment.tick.feature);
   if (!moment.tick.in_contact || moment.tick.object < 0 || moment.tick.feature < 0 ||
-      object >= scene.objects.size() || scene.objects[object].stands_for_shape) {
+      object >= scene.objects.size() || scene.objects[object].is_placeholder) {
     return;
   }
   const bool shaped = object < moment.shapes.size() && moment.shapes[object] != nullptr;
@@ -163,7 +163,7 @@ void add_edge_planes(const DrawnScene& scene, const DrawnMoment& moment, TouchMa
                           corner(triangle, 2) + lift, corner(triangle, 2) + lift},
                          kTriangleColour});
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::ptrdiff_t other = beside(mesh, triangle, k);
+    const std::ptrdiff_t other = neighbour_of(mesh, triangle, k);
     const Point half =
         (other < 0 ? n : Point(n + normal(static_cast<std::size_t>(other)))).stableNormalized();
     const Point a = corner(triangle, k);
@@ -181,9 +181,9 @@ double size_of(const DrawnScene& scene) {
     if (object.endless) continue;
     for (const Point& vertex : object.mesh.vertices) box.extend(vertex);
   }
-  constexpr double kLeast = 0.06;  // m: typical motion of a hand
-  constexpr double kMost = 0.3;
-  return box.isEmpty() ? kLeast : std::clamp(box.diagonal().norm(), kLeast, kMost);
+  constexpr double kMin = 0.06;  // m: typical motion of a hand
+  constexpr double kMax = 0.3;
+  return box.isEmpty() ? kMin : std::clamp(box.diagonal().norm(), kMin, kMax);
 }
 
 double arrow_length(double force, const DrawnScene& scene) {

@@ -38,7 +38,7 @@ class TouchSource {
   virtual PlayHead& head() = 0;
   /// Returns the time (s) of the moment `steps` single steps after the shown one. A step is a tick
   /// of a recording, or a kept picture of a run.
-  virtual double beside(int steps) const = 0;
+  virtual double time_of_step(int steps) const = 0;
   /// Returns a sentence about the kept time.
   virtual std::string kept() const = 0;
   /// Returns sentences that describe a recording and what it lacks; empty for a run.

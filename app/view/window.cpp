@@ -57,14 +57,14 @@ bool software_draws() {
 class Content {
  public:
   Content(Screen& screen, TouchSource& source, const WindowChoice& choice)
-      : screen_(screen), source_(source), felt_(choice.felt) {
+      : screen_(screen), source_(source), feedback_(choice.felt) {
     screen_.set_scale(choice.ui_scale);
     choice_.paint.theme = choice.theme;
     choice_.paint.fine = !software_draws();
     hand_.input().choose(choice.hand);
-    if (!felt_.trouble().empty()) {
-      scene::logger().warn("{}", felt_.trouble());
-      tell(felt_.trouble());
+    if (!feedback_.trouble().empty()) {
+      scene::logger().warn("{}", feedback_.trouble());
+      show_message(feedback_.trouble());
     }
   }
 
@@ -84,7 +84,7 @@ class Content {
   void hold_key();
   void begin_run(session::SharedReader& run, bool again);
   void take_picture();
-  void tell(const std::string& message);
+  void show_message(const std::string& message);
 
   Screen& screen_;
   TouchSource& source_;
@@ -96,7 +96,7 @@ class Content {
   bool led_ = false;
   std::vector<int> keys_;  // pressed since the last picture
   double frame_time_ = 0;  // of the last picture, s
-  TouchThread felt_;
+  TouchThread feedback_;
   bool felt_follows_ = false;
   std::string shown_file_;  // scene file of the run that is shown
   ViewChoice choice_;
@@ -104,7 +104,7 @@ class Content {
   std::chrono::steady_clock::time_point message_until_{};
 };
 
-void Content::tell(const std::string& message) {
+void Content::show_message(const std::string& message) {
   notes_.message = message;
   message_until_ = std::chrono::steady_clock::now() +
                    std::chrono::milliseconds(static_cast<int>(kMessageSeconds * 1000));
@@ -113,7 +113,7 @@ void Content::tell(const std::string& message) {
 void Content::take_picture() {
   const std::string file = picture_name(source_.name());
   const auto written = write_png(canvas_->read(), file, PngColours::kAll);
-  tell(written ? "Picture: " + file : written.error().message);
+  show_message(written ? "Picture: " + file : written.error().message);
 }
 
 // The mouse has priority while it drags; another source starts the hand again afterwards. While a
@@ -128,7 +128,7 @@ void Content::lead_hand(const ScreenPart& part) {
   hand_.step(
       keys_, camera_, p_WT, {arm.min_W, arm.max_W}, frame_time_,
       live && !by_mouse && source_.has_moment() && run.state() == session::RunState::kRunning);
-  HandWish hand = by_mouse ? mouse_.hand() : hand_.input().hand();
+  MouseHandTarget hand = by_mouse ? mouse_.hand() : hand_.input().hand();
   hand.holds = hand.holds && live;
   if (hand.holds || led_) {
     run.lead_hand(hand.p_WH, hand.holds);
@@ -189,11 +189,11 @@ void Content::begin_run(session::SharedReader& run, bool again) {
   const bool by_mouse = hand_.input().source() == HandSource::kMouse;
   if (!again) choice_.mouse_is_hand = scene.hand_by_mouse && by_mouse;
   hand_.input().let_go();
-  if (scene.hold_by_key) tell("Hold the space bar in this window to enable forces.");
+  if (scene.hold_by_key) show_message("Hold the space bar in this window to enable forces.");
   if (!by_mouse && !scene.hand_by_mouse) {
-    tell("The hand of this run follows its path. Start the run with --hand to move it.");
+    show_message("The hand of this run follows its path. Start the run with --hand to move it.");
   }
-  if (!felt_follows_) felt_.follow(run.name());
+  if (!felt_follows_) feedback_.follow(run.name());
   felt_follows_ = true;
   // The run started this window.
   notes_.closing_ends = scene.hand_by_mouse && scene.pid == getppid();
@@ -242,7 +242,8 @@ driver::Result<void> Content::draw(double frame_time) {
   notes_.notice = source_.notice();
   if (std::chrono::steady_clock::now() > message_until_) notes_.message.clear();
   draw_side_panel({scene.width, 0, panel, size.y}, source_, notes_, choice_);
-  if (const std::string told = choice_.run.take_told(); !told.empty()) tell(told);
+  if (const std::string message = choice_.run.take_message(); !message.empty())
+    show_message(message);
   if (painter_ != nullptr) TimeLine::draw({0, scene.height, scene.width, line}, source_);
   draw_notices(scene, notes_, choice_);
   screen_.end();
@@ -286,7 +287,7 @@ driver::Result<void> show_window(session::RunAttachment& runs, const WindowChoic
 driver::Result<void> show_recording(const RecordingView& recording, const std::string& file,
                                     const WindowChoice& choice) {
   RecordingPlayer player(recording, std::filesystem::path(file).stem());
-  if (choice.at >= 0) player.head().stand_at(player.head().begin() + choice.at);
+  if (choice.at >= 0) player.head().stop_at(player.head().begin() + choice.at);
   return show(player, choice);
 }
 

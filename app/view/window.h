@@ -14,7 +14,7 @@ namespace thimble::view {
 /// Initial state of a window, and when it closes by itself, for tests.
 struct WindowChoice {
   HandSource hand = HandSource::kMouse;  ///< Source of the hand, if the run lets a viewer move it.
-  FeltChoice felt;
+  FeedbackChoice felt;
   double ui_scale = 0;  ///< Scale of text and panel; 0: that of the monitor.
   Theme theme = Theme::kLight;
   double seconds = 0;        ///< Closes after this time, s; 0: when the user closes it.

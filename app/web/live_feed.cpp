@@ -102,7 +102,7 @@ driver::Result<std::string> LiveFeed::page(std::uint16_t port) const {
     touch.arms.back().force_limit = scene.force_max;
   }
   const report::PageSource source{.port = port,
-                                  .rows = kTicksMost,
+                                  .rows = kTicksMax,
                                   .run = run(),
                                   .no_restart = reader_.why_no_restart(),
                                   .no_step = reader_.why_no_step()};
@@ -122,10 +122,10 @@ void LiveFeed::step() {
   for (std::size_t i = 0; i < reader_.scene().knobs.size(); ++i) {
     json["knobs"].push_back(reader_.knob_wanted(i));
   }
-  const std::string told = report::json_text(json);
+  const std::string facts = report::json_text(json);
   take_ticks(json, block, update);
-  if (update.ticks == 0 && told == told_) return;
-  told_ = told;
+  if (update.ticks == 0 && facts == sent_facts_) return;
+  sent_facts_ = facts;
   json["ticks"] = counters.ticks;
   json["missed"] = counters.missed;
   json["lost"] = lost_;
@@ -139,7 +139,7 @@ void LiveFeed::step() {
   kept_ticks_ += update.ticks;
   kept_bytes_ += update.bytes.size();
   updates_.push_back(std::move(update));
-  while (updates_.size() > 1 && (kept_ticks_ > kTicksMost || kept_bytes_ > kBytesMost)) forget();
+  while (updates_.size() > 1 && (kept_ticks_ > kTicksMax || kept_bytes_ > kBytesMax)) forget();
 }
 
 void LiveFeed::take_ticks(Json& json, report::PageBlock& block, Update& update) {
@@ -164,7 +164,7 @@ void LiveFeed::take_ticks(Json& json, report::PageBlock& block, Update& update) 
       }
     }
     std::vector<std::size_t> kept;
-    for (std::size_t i = std::max(old, ticks_.size() - std::min(ticks_.size(), kTicksMost));
+    for (std::size_t i = std::max(old, ticks_.size() - std::min(ticks_.size(), kTicksMax));
          i < ticks_.size(); ++i) {
       kept.push_back(i);
     }

@@ -30,9 +30,9 @@ namespace thimble::web {
 class LiveFeed {
  public:
   /// Maximum number of ticks kept: a minute at 1 kHz, as a stored page has. [chosen]
-  static constexpr std::size_t kTicksMost = 60'000;
+  static constexpr std::size_t kTicksMax = 60'000;
   /// Maximum bytes of all updates kept. [chosen: a minute of a large dent]
-  static constexpr std::size_t kBytesMost = 24'000'000;
+  static constexpr std::size_t kBytesMax = 24'000'000;
   /// Size of a message, bytes, after which no further update is added to it. [chosen: 4 s at 1 kHz]
   static constexpr std::size_t kMessageBytes = 256 * 1024;
 
@@ -93,10 +93,10 @@ class LiveFeed {
   std::int64_t begin_ns_ = 0;
   double now_ = 0;  // time of the newest tick, s
   std::vector<std::uint64_t> other_ticks_;
-  report::MarksAsTheyCome marks_;
+  report::LiveMarks marks_;
   std::unique_ptr<session::RunStatistics> statistics_;
   int until_figures_ = 0;
-  std::string told_;  // state and other facts of the run in the last update
+  std::string sent_facts_;  // state and other facts of the run in the last update
   std::uint64_t patches_ = 0;
   std::uint64_t shape_moves_ = 0;
   std::vector<render::TriangleMesh> first_, base_, meshes_;  // of the shaped objects

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "share/knob_order.h"
+#include "share/turn_knob.h"
 
 namespace thimble::web {
 namespace {
@@ -33,10 +33,10 @@ driver::Result<void> ask(session::SharedReader& reader, std::string_view request
 }  // namespace
 
 driver::Result<void> steer_run(session::SharedReader& reader, std::string_view request) {
-  if (auto now = reader.heard(); !now) return now;
+  if (auto now = reader.check_accepted(); !now) return now;
   if (reader.state() == session::RunState::kEnded) return driver::Error{"The run has ended."};
   if (auto asked = ask(reader, request); !asked) return asked;
-  return reader.heard();
+  return reader.check_accepted();
 }
 
 }  // namespace thimble::web

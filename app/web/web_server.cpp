@@ -13,10 +13,10 @@
 
 #include "transports/loopback_acceptor.h"
 #include "transports/socket_owner.h"
+#include "web/connection.h"
 #include "web/live_feed.h"
 #include "web/request_guard.h"
 #include "web/steer_run.h"
-#include "web/visitor.h"
 
 namespace thimble::web {
 namespace {
@@ -28,8 +28,8 @@ namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::size_t kConnectionsMost = 64;  // including refused ones; chosen
-constexpr std::size_t kCutMost = 64;          // additional connections that are closing; chosen
+constexpr std::size_t kConnectionsMax = 64;  // including refused ones; chosen
+constexpr std::size_t kClosingMax = 64;      // additional connections that are closing; chosen
 
 std::string_view view_of(beast::string_view text) {
   return {text.data(), text.size()};
@@ -59,8 +59,9 @@ class WebServer::Parts {
   const RequestGuard& guard() const noexcept { return guard_; }
   std::uint16_t port() const noexcept { return port_; }
   std::size_t pages() const noexcept {
-    return static_cast<std::size_t>(std::count_if(
-        visitors_.begin(), visitors_.end(), [](const Visitor& one) { return one.is_page(); }));
+    return static_cast<std::size_t>(
+        std::count_if(connections_.begin(), connections_.end(),
+                      [](const Connection& one) { return one.is_page(); }));
   }
 
   void step() {
@@ -68,32 +69,33 @@ class WebServer::Parts {
     if (runs_.step()) {
       // Pages of the previous run must reload. Pages that connected before the first run wait for
       // it.
-      for (Visitor& visitor : visitors_) {
-        if (feed_) visitor.close(websocket::close_code::service_restart, "another run");
+      for (Connection& connection : connections_) {
+        if (feed_) connection.close(websocket::close_code::service_restart, "another run");
       }
       feed_.emplace(*runs_.reader());
     }
     if (!feed_) return;
     feed_->step();
-    for (Visitor& visitor : visitors_) visitor.tell(*feed_);
+    for (Connection& connection : connections_) connection.send_updates(*feed_);
   }
 
-  void leave(std::chrono::milliseconds most) {
+  void leave(std::chrono::milliseconds max_time) {
     error_code ignored;
     acceptor_.close(ignored);
-    const auto end = std::chrono::steady_clock::now() + most;
-    const auto has_all = [this](const Visitor& one) {
+    const auto end = std::chrono::steady_clock::now() + max_time;
+    const auto has_all = [this](const Connection& one) {
       return !one.is_page() || one.has_all(feed_ ? &*feed_ : nullptr);
     };
-    while (!std::all_of(visitors_.begin(), visitors_.end(), has_all) &&
+    while (!std::all_of(connections_.begin(), connections_.end(), has_all) &&
            std::chrono::steady_clock::now() < end) {
-      for (Visitor& visitor : visitors_) {
-        if (feed_) visitor.tell(*feed_);
+      for (Connection& connection : connections_) {
+        if (feed_) connection.send_updates(*feed_);
       }
       serve_for(std::chrono::milliseconds(10));
     }
-    for (Visitor& visitor : visitors_) visitor.close(websocket::close_code::normal, "ended");
-    while (!visitors_.empty() && std::chrono::steady_clock::now() < end) {
+    for (Connection& connection : connections_)
+      connection.close(websocket::close_code::normal, "ended");
+    while (!connections_.empty() && std::chrono::steady_clock::now() < end) {
       serve_for(std::chrono::milliseconds(10));
     }
     cut_all();
@@ -102,25 +104,25 @@ class WebServer::Parts {
  private:
   // Ends all pending operations; their callbacks use visitors, which still exist here.
   void cut_all() {
-    for (Visitor& visitor : visitors_) visitor.cut();
+    for (Connection& connection : connections_) connection.cut();
     io_.restart();
     io_.run();
-    visitors_.clear();
+    connections_.clear();
   }
   void serve_for(std::chrono::milliseconds time) {
     io_.restart();
     io_.run_for(time);
-    visitors_.remove_if([](const Visitor& visitor) { return visitor.done(); });
+    connections_.remove_if([](const Connection& connection) { return connection.done(); });
   }
 
   void accept() {
-    coming_.emplace_back(io_, kSaidMost);
+    coming_.emplace_back(io_, kIncomingMax);
     acceptor_.async_accept(coming_.front().socket(), [this](const error_code& failed) {
       if (failed && !acceptor_.is_open()) return coming_.clear();
-      if (!failed && may_come(coming_.front())) {
-        Visitor& visitor = coming_.front();
-        visitors_.splice(visitors_.end(), coming_);
-        visitor.begin([this](Visitor& one, const auto& request) { answer(one, request); });
+      if (!failed && is_accepted(coming_.front())) {
+        Connection& connection = coming_.front();
+        connections_.splice(connections_.end(), coming_);
+        connection.begin([this](Connection& one, const auto& request) { answer(one, request); });
       }
       coming_.clear();
       accept();
@@ -129,20 +131,20 @@ class WebServer::Parts {
 
   /// Returns whether a connection is accepted: from the same user, and within the limit. If the
   /// limit is reached, the oldest connection that is no page is closed.
-  bool may_come(Visitor& visitor) {
-    if (!driver::distrust_of_peer(visitor.socket().native_handle()).empty()) return false;
-    visitors_.remove_if([](const Visitor& one) { return one.done(); });
-    if (visitors_.size() < kConnectionsMost) return true;
-    const auto oldest = std::find_if(visitors_.begin(), visitors_.end(), [](const Visitor& one) {
-      return !one.is_page() && !one.is_cut();
-    });
-    if (oldest != visitors_.end()) oldest->cut();
+  bool is_accepted(Connection& connection) {
+    if (!driver::distrust_of_peer(connection.socket().native_handle()).empty()) return false;
+    connections_.remove_if([](const Connection& one) { return one.done(); });
+    if (connections_.size() < kConnectionsMax) return true;
+    const auto oldest =
+        std::find_if(connections_.begin(), connections_.end(),
+                     [](const Connection& one) { return !one.is_page() && !one.is_cut(); });
+    if (oldest != connections_.end()) oldest->cut();
     // A closed connection exists until its pending operations have ended.
-    return visitors_.size() < kConnectionsMost + kCutMost;
+    return connections_.size() < kConnectionsMax + kClosingMax;
   }
 
   template <class Request>
-  void answer(Visitor& visitor, const Request& request) {
+  void answer(Connection& connection, const Request& request) {
     const bool live = websocket::is_upgrade(request);
     const bool asks = !live && request.method() == http::verb::post;
     const RequestGuard::Request named{.target = view_of(request.target()),
@@ -151,39 +153,39 @@ class WebServer::Parts {
                                       .token = view_of(request["X-Thimble-Token"])};
     const std::string wrong = asks ? guard_.refuse_change(named, "/steer", port_)
                                    : guard_.refuse(named, live ? "/live" : "/", port_);
-    if (!wrong.empty()) return refuse(visitor, http::status::forbidden, wrong);
+    if (!wrong.empty()) return refuse(connection, http::status::forbidden, wrong);
     if (live) {
-      if (pages() < kPagesMost) return visitor.open();
-      return refuse(visitor, http::status::service_unavailable,
+      if (pages() < kPagesMax) return connection.open();
+      return refuse(connection, http::status::service_unavailable,
                     "Too many pages are connected already.");
     }
     if (!asks && request.method() != http::verb::get && request.method() != http::verb::head) {
-      return refuse(visitor, http::status::method_not_allowed,
+      return refuse(connection, http::status::method_not_allowed,
                     "Only GET and HEAD requests are supported.");
     }
-    if (!feed_) return wait(visitor);
+    if (!feed_) return wait(connection);
     if (asks) {
       const std::string_view run = view_of(request["X-Thimble-Run"]);
       if (!run.empty() && run != feed_->run()) {
-        return refuse(visitor, http::status::conflict,
+        return refuse(connection, http::status::conflict,
                       "The run of this page is over. Reload the page.");
       }
-      return steer(visitor, request.body());
+      return steer(connection, request.body());
     }
     auto page = feed_->page(port_);
     if (!page) {
-      return refuse(visitor, http::status::internal_server_error, page.error().message);
+      return refuse(connection, http::status::internal_server_error, page.error().message);
     }
     auto response = response_of(http::status::ok, "text/html; charset=utf-8");
     response.body() = std::move(page).value();
-    visitor.respond(std::move(response));
+    connection.respond(std::move(response));
   }
 
-  void steer(Visitor& visitor, const std::string& asked) {
+  void steer(Connection& connection, const std::string& asked) {
     if (const auto done = steer_run(*runs_.reader(), asked); !done) {
-      return refuse(visitor, http::status::conflict, done.error().message);
+      return refuse(connection, http::status::conflict, done.error().message);
     }
-    visitor.respond(response_of(http::status::ok, "text/plain; charset=utf-8"));
+    connection.respond(response_of(http::status::ok, "text/plain; charset=utf-8"));
   }
 
   static http::response<http::string_body> response_of(http::status status, const char* type) {
@@ -197,24 +199,24 @@ class WebServer::Parts {
     response.set("Content-Security-Policy", "frame-ancestors 'none'");
     return response;
   }
-  static void refuse(Visitor& visitor, http::status status, const std::string& why) {
+  static void refuse(Connection& connection, http::status status, const std::string& why) {
     auto response = response_of(status, "text/plain; charset=utf-8");
     response.body() = why + "\n";
-    visitor.respond(std::move(response));
+    connection.respond(std::move(response));
   }
-  void wait(Visitor& visitor) const {
+  void wait(Connection& connection) const {
     auto response = response_of(http::status::service_unavailable, "text/plain; charset=utf-8");
     response.set("Refresh", "1");
     response.body() = runs_.notice() + "\n";
-    visitor.respond(std::move(response));
+    connection.respond(std::move(response));
   }
 
   session::RunAttachment& runs_;
   RequestGuard guard_;
   asio::io_context io_{1};
   tcp::acceptor acceptor_{io_};
-  std::list<Visitor> coming_;  // the connection to be accepted next
-  std::list<Visitor> visitors_;
+  std::list<Connection> coming_;  // the connection to be accepted next
+  std::list<Connection> connections_;
   std::optional<LiveFeed> feed_;
   std::uint16_t port_ = 0;
 };
@@ -243,8 +245,8 @@ std::size_t WebServer::pages() const noexcept {
 void WebServer::step() {
   parts_->step();
 }
-void WebServer::leave(std::chrono::milliseconds most) {
-  parts_->leave(most);
+void WebServer::leave(std::chrono::milliseconds max_time) {
+  parts_->leave(max_time);
 }
 
 }  // namespace thimble::web

@@ -21,10 +21,10 @@ class WebServer {
   /// Time between two updates: 30 a second. [chosen: what a screen shows of a touch]
   static constexpr std::chrono::milliseconds kStep{33};
   /// Maximum number of pages at a time. [chosen]
-  static constexpr std::size_t kPagesMost = 16;
+  static constexpr std::size_t kPagesMax = 16;
   /// Maximum bytes of a message from a page; longer ones end its connection. [chosen: pages need to
   /// send nothing]
-  static constexpr std::size_t kSaidMost = 1024;
+  static constexpr std::size_t kIncomingMax = 1024;
 
   /// Listens on a port of 127.0.0.1; 0: any free port. Keeps `runs`, which must outlive it. The
   /// error says what to do.
@@ -41,9 +41,9 @@ class WebServer {
   std::size_t pages() const noexcept;
   /// Serves for kStep, then sends what is new to the pages.
   void step();
-  /// Sends the rest of a run that is over to the pages, for at most `most`, and closes all
+  /// Sends the rest of a run that is over to the pages, for at most `max_time`, and closes all
   /// connections.
-  void leave(std::chrono::milliseconds most);
+  void leave(std::chrono::milliseconds max_time);
 
  private:
   class Parts;

@@ -81,7 +81,7 @@ driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver:
   return make_of(
       arm_model(model), settings, std::move(path), seed,
       [&](const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) -> driver::Result<AnyPlant> {
-        if (settings.links.named() || settings.drive_train.joints_rub()) {
+        if (settings.links.named() || settings.drive_train.has_joint_friction()) {
           return as_any<AnyPlant>(LinkedSerialPlant::make(model, settings, p_BT, p_BH));
         }
         if (needs_drive_train(settings)) {
@@ -103,7 +103,7 @@ driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver:
               "Link inertia is simulated for serial arms only. Remove the links from the arm "
               "file."};
         }
-        if (settings.drive_train.joints_rub()) {
+        if (settings.drive_train.has_joint_friction()) {
           return as_any<AnyPlant>(RubbingLinkagePlant::make(model, settings, p_BT, p_BH));
         }
         if (needs_drive_train(settings)) {

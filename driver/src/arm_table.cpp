@@ -17,7 +17,7 @@ template <class Wire>
 std::unique_ptr<const Arm> make(const ArmModel& model) {
   return std::visit(
       [&]<class Geometry>(const Geometry& geometry) -> std::unique_ptr<const Arm> {
-        if constexpr (std::is_same_v<Geometry, ToldArm>) {
+        if constexpr (std::is_same_v<Geometry, VendorPoseArm>) {
           return nullptr;  // no wire has it
         } else {
           return std::make_unique<WireArm<Wire, Geometry>>(
@@ -30,9 +30,9 @@ std::unique_ptr<const Arm> make(const ArmModel& model) {
 /// Returns the model of an arm that reports its tip position: a motor of 1 N/A and an encoder along
 /// each axis of the base. The encoder step represents the resolution of such an arm, which the
 /// vendors do not state: 0.02 mm, as for arms with known steps [DEVICES 2].
-ArmModel told_model() noexcept {
+ArmModel vendor_pose_model() noexcept {
   ArmModel model;
-  model.geometry = ToldArm{};
+  model.geometry = VendorPoseArm{};
   model.drives.fill({.sign = 1, .ratio = 1, .torque_constant = 1, .current_max = 1});
   model.encoders.fill(
       {.sign = 1, .counts_per_motor_turn = 2 * std::numbers::pi / 2e-5, .home_counts = 0});
@@ -79,7 +79,7 @@ constexpr std::array<ShapeRow, std::variant_size_v<ArmGeometry>> kShapes{{
     {"serial", nullptr},
     {"polhem", []() noexcept { return arm_model(hfab::polhem_model()); }},
     {"falcon", []() noexcept { return arm_model(falcon::falcon_model()); }},
-    {"told", told_model},
+    {"told", vendor_pose_model},
 }};
 
 }  // namespace

@@ -183,8 +183,8 @@ void Device::take_offer(std::int64_t now_ns) noexcept {
   refused_in_a_row_ = missed_in_a_row_ = 0;
   last_report_ns_ = quiet_since_ns_ = now_ns;
   forget_velocity();
-  doubt_counts();
-  known_to_stand_ = insisted_ = false;  // nothing is known about this link
+  require_home_pose();
+  force_confirmed_ = insisted_ = false;  // nothing is known about this link
   send_zero();
 }
 
@@ -272,7 +272,7 @@ bool Device::follow_silence(std::int64_t now_ns) noexcept {
   ++missed_in_a_row_;
   if (lost_ || now_ns - quiet_since_ns_ <= settings_.silence_limit_ns) return false;
   silent_ = true;
-  if (spoken_) doubt_counts();
+  if (spoken_) require_home_pose();
   return true;
 }
 
@@ -305,7 +305,7 @@ bool Device::take_report(std::int64_t now_ns, std::int64_t deadline_ns) noexcept
   const Eigen::Vector3d p_WT = settings_.p_WB + settings_.R_WB * fresh.pose.p_BT;
   if (jumped(p_WT, since_last)) return false;
   if (moved_unseen(p_WT, now_ns)) {
-    doubt_counts();
+    require_home_pose();
     if (active_) gate_.trip(Fault::kCountsJumped);
     forget_velocity();
   }
@@ -362,9 +362,9 @@ bool Device::jumped(const Eigen::Vector3d& p_WT, double since_last) noexcept {
   // 50 g).
   constexpr double kAcceleration = 1000;  // m/s^2
   // Reports come in frames of 1 ms; a late loop reads them at shorter intervals.
-  constexpr double kLeast = 1e-3, kMost = 5e-3;  // s
-  const bool known = active_ && velocity_->primed() && !jumped_ && since_last < kMost;
-  const double time = since_last > kLeast ? since_last : kLeast;
+  constexpr double kTimeMin = 1e-3, kTimeMax = 5e-3;  // s
+  const bool known = active_ && velocity_->primed() && !jumped_ && since_last < kTimeMax;
+  const double time = since_last > kTimeMin ? since_last : kTimeMin;
   const Eigen::Vector3d off = p_WT - state_.p_WT - v_gate_W() * since_last;
   const double most = kAcceleration * time * time;
   jumped_ = known && off.squaredNorm() > most * most;
@@ -397,11 +397,11 @@ bool Device::moved_unseen(const Eigen::Vector3d& p_WT, std::int64_t now_ns) cons
   if (guarded || programs_) book(sent, force);
   if (sent.status != LinkStatus::kOk) {
     // The arm may have taken the force nevertheless.
-    if (!force.f_T_W().isZero(0)) known_to_stand_ = false;
-    return keep_standing();
+    if (!force.f_T_W().isZero(0)) force_confirmed_ = false;
+    return keep_previous_force();
   }
   f_sent_W_ = sent.scale * force.f_T_W();
-  known_to_stand_ = true;
+  force_confirmed_ = true;
 }
 
 void Device::write(const ForceCommand& command) noexcept {
@@ -475,18 +475,18 @@ void Device::watch() noexcept {
 }
 
 void Device::send_zero() noexcept {
-  if (lost_ || send(GatedForce()).status != LinkStatus::kOk) return keep_standing();
+  if (lost_ || send(GatedForce()).status != LinkStatus::kOk) return keep_previous_force();
   f_sent_W_.setZero();
   if (heat_.named()) heat_.sent({}, false);
-  known_to_stand_ = true;
+  force_confirmed_ = true;
   insisted_ = false;
 }
 
-void Device::keep_standing() noexcept {
+void Device::keep_previous_force() noexcept {
   if (lost_ && !f_sent_W_.isZero(0)) {
     // A lost arm is stopped by its own watchdog and gets no more messages.
     f_sent_W_.setZero();
-    known_to_stand_ = false;
+    force_confirmed_ = false;
     if (heat_.named()) heat_.sent({}, false);
   }
   gate_.resume_from(f_sent_W_);
@@ -543,7 +543,7 @@ void Device::lose() noexcept {
   lost_ = true;
   gate_.trip(Fault::kTransportLost);
   // A message that has not left yet never will.
-  if (link_ != nullptr && link_->settled() != LinkStatus::kOk) known_to_stand_ = false;
+  if (link_ != nullptr && link_->settled() != LinkStatus::kOk) force_confirmed_ = false;
   retire_link();
 }
 

@@ -10,7 +10,7 @@ namespace thimble::driver {
 namespace {
 
 /// Max. distance of an arm from the world's origin, m [chosen: a room].
-constexpr double kBaseMost = 10;
+constexpr double kBaseMax = 10;
 
 bool is_limit(double value) noexcept {
   return value > 0 && value < HUGE_VAL;
@@ -54,22 +54,20 @@ Result<void> DeviceSettings::check() const {
   if (!is_limit(limits.force_max)) return wrong("force_max");
   if (!is_limit(limits.speed_max)) return wrong("speed_max");
   if (!is_limit(limits.rise_max)) return wrong("rise_max");
-  if (!no_motors && limits.force_max > GateLimits::kForceMost) {
+  if (!no_motors && limits.force_max > GateLimits::kForceMax) {
     return loose("force_max", "at most 100 N");
   }
-  if (!no_motors && limits.speed_max > GateLimits::kSpeedMost) {
+  if (!no_motors && limits.speed_max > GateLimits::kSpeedMax) {
     return loose("speed_max", "at most 20 m/s");
   }
   if (!is_limit(limits.soft_start)) return wrong("soft_start");
   if (!is_limit(limits.reopen)) return wrong("reopen time");
-  if (limits.soft_start < GateLimits::kSoftStartLeast)
-    return loose("soft_start", "at least 0.05 s");
-  if (limits.rise_max >
-      std::max(GateLimits::kRiseMost, limits.force_max / GateLimits::kRiseTimeLeast))
+  if (limits.soft_start < GateLimits::kSoftStartMin) return loose("soft_start", "at least 0.05 s");
+  if (limits.rise_max > std::max(GateLimits::kRiseMax, limits.force_max / GateLimits::kRiseTimeMin))
     return loose("rise_max", "at most 100,000 N/s");
   if (limits.stall_ns <= 0) return wrong("stall time");
   if (limits.watchdog_ns <= 0) return wrong("watchdog time");
-  if (limits.watchdog_ns > GateLimits::kWatchdogMost_ns)
+  if (limits.watchdog_ns > GateLimits::kWatchdogMax_ns)
     return loose("watchdog time", "at most 1 s");
   if (!(limits.power_max >= 0 && limits.power_max < HUGE_VAL)) {
     return wrong("power_max", "of zero or more");
@@ -84,13 +82,13 @@ Result<void> DeviceSettings::check() const {
         "R_WB of the device settings is not a rotation. Its columns must be orthonormal and "
         "right-handed, within 1e-6."};
   }
-  if (!p_WB.allFinite() || !(p_WB.cwiseAbs().maxCoeff() <= kBaseMost)) {
+  if (!p_WB.allFinite() || !(p_WB.cwiseAbs().maxCoeff() <= kBaseMax)) {
     return Error{
         "p_WB of the device settings must be finite and within 10 m of the world's origin on each "
         "axis."};
   }
   if (auto checked = check_walls(walls); !checked) return checked;
-  if (!is_limit(motion.hold_most)) return wrong("hold_unchanged time");
+  if (!is_limit(motion.max_hold)) return wrong("hold_unchanged time");
   for (std::size_t i = 0; heat.named() && i < 3; ++i) {
     if (!is_limit(heat.continuous_current[i])) return wrong("continuous_current");
     if (!is_limit(heat.time_constant[i])) return wrong("thermal_time_constant");
@@ -110,7 +108,7 @@ Result<void> DeviceSettings::check() const {
   if (energy.stage == EnergyStage::kBounding && !is_limit(energy.slope)) {
     return wrong("slope of the energy bound");
   }
-  if (energy.delay_ticks < 0 || energy.delay_ticks > EnergyGuardSettings::kDelayMost) {
+  if (energy.delay_ticks < 0 || energy.delay_ticks > EnergyGuardSettings::kDelayMax) {
     return Error{
         "The energy stage of the gate supports delays of 0 to 15 ticks; the delay of the loop is " +
         std::to_string(energy.delay_ticks) + "."};

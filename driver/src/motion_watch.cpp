@@ -21,20 +21,20 @@ constexpr double kExplained = 0.83, kExplainedSudden = 0.5, kExplainedJump = 0.5
 // Response of the tip's acceleration to the force, as a share of that of the arm without a hand. A
 // hand that holds on makes it smaller, and its spring may hide most of it; nothing makes it much
 // larger.
-constexpr double kAnswerLeast = 0.15, kAnswerMost = 1.4;
+constexpr double kAnswerMin = 0.15, kAnswerMax = 1.4;
 // Mass of a hand in addition to that of the arm, kg, including the part hidden by its spring.
 constexpr double kHeaviest = 0.3;
 // Speed gained against the force, as a share of the speed that the force would give to the arm
 // without a hand.
-constexpr double kGainLeast = 0.2, kGainClear = 0.3, kGainMost = 3;
+constexpr double kGainMin = 0.2, kGainClear = 0.3, kGainMax = 3;
 // Limits after removal of a steady trend (a hand that pulls harder and harder): the force's change,
 // N, and the response.
-constexpr double kSudden = 0.05, kSuddenLeast = 0.3, kSuddenMost = 2.5;
+constexpr double kSudden = 0.05, kSuddenMin = 0.3, kSuddenMax = 2.5;
 // Thresholds of a correct response. They are lower, because it switches nothing off.
 constexpr double kProofChange = 0.7, kProofAnswer = 0.4;
 // Weights of a window for and against the motors, and the max. of their sum. From zero, one clear
 // window or three doubtful ones are a fault.
-constexpr int kProof = 3, kDoubt = 1, kProofMost = 15;
+constexpr int kProof = 3, kDoubt = 1, kProofMax = 15;
 
 // A joint that does not count may be held by dry friction, or may not move at all. A straight
 // stroke may lie in the surface in which the other two joints move the tip, with a hand that takes
@@ -48,7 +48,7 @@ constexpr int kProof = 3, kDoubt = 1, kProofMost = 15;
 // holds 0.52 N from one direction to the other.
 constexpr double kLeg = 0.0015, kSameWay = 0.9;  // m; min. cosine between equal directions
 constexpr double kHeldByFriction = 0.55;         // N
-constexpr int kLegs = 2, kForcesMost = 3, kCoincidences = 5;
+constexpr int kLegs = 2, kForcesMax = 3, kCoincidences = 5;
 // No person makes a stroke of this length (m) in which one joint under force never counts [chosen].
 constexpr double kLongWay = 0.02;
 constexpr std::uint32_t kStillBlocks = 5;  // in which a light tip answers by several counts
@@ -191,16 +191,16 @@ bool MotionWatch::believed(const Pairs& pairs, int& proof) const noexcept {
   const double answer = settings_.mass * sums.fa / sums.ff;
   const double sudden_answer = settings_.mass * sudden.fa / sudden.ff;
   if (answer >= kProofAnswer && sudden_answer >= kProofAnswer) {
-    proof = std::min(proof + kProof, kProofMost);
+    proof = std::min(proof + kProof, kProofMax);
     return true;
   }
   const double gain = -settings_.mass * a_mean / f_mean;
-  const bool doubtful = change >= kDoubtfulChange && -answer >= kAnswerLeast &&
-                        -answer <= kAnswerMost && gain >= kGainLeast && gain <= kGainMost;
+  const bool doubtful = change >= kDoubtfulChange && -answer >= kAnswerMin &&
+                        -answer <= kAnswerMax && gain >= kGainMin && gain <= kGainMax;
   if (!doubtful) return true;
   const bool as_sudden = sudden.ff >= kAccelerations * kSudden * kSudden &&
                          sudden.fa * sudden.fa >= kExplainedSudden * sudden.ff * sudden.aa &&
-                         -sudden_answer >= kSuddenLeast && -sudden_answer <= kSuddenMost;
+                         -sudden_answer >= kSuddenMin && -sudden_answer <= kSuddenMax;
   const bool clear = change >= kForceChange && (as_sudden || change >= kLargeChange) &&
                      -answer >= settings_.mass / (settings_.mass + kHeaviest) && gain >= kGainClear;
   proof -= clear ? kProof : kDoubt;
@@ -250,9 +250,9 @@ bool MotionWatch::frozen_joint(const Eigen::Matrix3d& R_WB, const Eigen::Matrix3
       still.leg_begin = block(0).p;
     }
     const double changed = std::min(still.along.width(), still.across.width()) / kHeldByFriction;
-    const int forces = changed < kForcesMost ? static_cast<int>(changed) : kForcesMost;
+    const int forces = changed < kForcesMax ? static_cast<int>(changed) : kForcesMax;
     fault |= forces > 0 && still.legs >= kLegs && still.legs + forces >= kCoincidences;
-    fault |= still.held >= settings_.hold_most && still.way >= kLongWay;
+    fault |= still.held >= settings_.max_hold && still.way >= kLongWay;
   }
   return fault;
 }
@@ -267,7 +267,7 @@ bool MotionWatch::frozen_reports(double time, bool numbered) noexcept {
   }
   held_ += time;
   if (numbered) return false;
-  return held_ >= settings_.hold_most || (speed_before_ >= kStopSpeed && held_ >= kStopTime);
+  return held_ >= settings_.max_hold || (speed_before_ >= kStopSpeed && held_ >= kStopTime);
 }
 
 }  // namespace thimble::driver

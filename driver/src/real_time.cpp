@@ -40,8 +40,9 @@ RealTimeGrant enter_real_time(int priority) {
 CpuLatencyRequest::CpuLatencyRequest(const std::filesystem::path& root) {
   const std::filesystem::path path = root / "dev/cpu_dma_latency";
   file_ = open(path.c_str(), O_WRONLY | O_CLOEXEC);
-  const std::int32_t most_us = 0;
-  if (file_ >= 0 && write(file_, &most_us, sizeof most_us) == sizeof most_us) return;
+  const std::int32_t max_latency_us = 0;
+  if (file_ >= 0 && write(file_, &max_latency_us, sizeof max_latency_us) == sizeof max_latency_us)
+    return;
   const int error = errno;
   if (file_ >= 0) close(file_);
   file_ = -1;

@@ -75,7 +75,7 @@ std::optional<ServoEnd> ServoLoop::tick(const std::atomic<bool>& stop) noexcept 
   clock_.sleep_until_ns(due_ns_);
   if (stop.load(std::memory_order_relaxed)) return end_with(ServoEnd::kStopped);
   const std::int64_t now_ns = clock_.now_ns();
-  if (now_ns - due_ns_ >= kLate_ns) look_for_sleep();
+  if (now_ns - due_ns_ >= kLate_ns) detect_suspend();
   const DeviceState& state = device_.read(now_ns, now_ns);
   const ForceCommand command = law_(state);
   device_.write(command);
@@ -90,7 +90,7 @@ std::optional<ServoEnd> ServoLoop::tick(const std::atomic<bool>& stop) noexcept 
   record.due_ns = due_ns_;
   record.work_ns = clock_.now_ns() - now_ns;
   sink_(record);
-  if (device_.fault() != Fault::kNone && !settings_.outlive_faults) {
+  if (device_.fault() != Fault::kNone && !settings_.continue_after_faults) {
     return end_with(ServoEnd::kFault);
   }
   due_ns_ += settings_.period_ns;
@@ -99,7 +99,7 @@ std::optional<ServoEnd> ServoLoop::tick(const std::atomic<bool>& stop) noexcept 
   return std::nullopt;
 }
 
-void ServoLoop::look_for_sleep() noexcept {
+void ServoLoop::detect_suspend() noexcept {
   const std::int64_t asleep_ns = clock_.asleep_ns();
   if (asleep_ns - asleep_ns_ >= kAwake_ns) device_.wake_from_sleep();
   asleep_ns_ = asleep_ns;

@@ -44,7 +44,7 @@ LinkRead WireLink::read(ArmSample& sample, std::int64_t deadline_ns) noexcept {
   if (!arm_->decode(std::span<const std::byte>(buffer).first(read.size), reading)) {
     return {LinkStatus::kRejected, read.skipped};
   }
-  if (came_before(reading)) return {LinkStatus::kRepeated, read.skipped};
+  if (is_repeated(reading)) return {LinkStatus::kRepeated, read.skipped};
   arm_->find_pose(reading, sample.pose);
   sample.counts = reading.counts;
   sample.buttons = reading.buttons;
@@ -52,7 +52,7 @@ LinkRead WireLink::read(ArmSample& sample, std::int64_t deadline_ns) noexcept {
   return {LinkStatus::kOk, read.skipped};
 }
 
-bool WireLink::came_before(const ArmReading& reading) noexcept {
+bool WireLink::is_repeated(const ArmReading& reading) noexcept {
   if (!reading.number) return false;
   const bool same = number_ == reading.number;
   // The number of a board that does not change it means nothing.

@@ -18,7 +18,7 @@ namespace thimble::driver {
 class WorkAccount {
  public:
   /// Takes the delay from sampling to effort in ticks, beyond the hold, 0 to
-  /// EnergyGuardSettings::kDelayMost.
+  /// EnergyGuardSettings::kDelayMax.
   explicit WorkAccount(int delay_ticks) noexcept : delay_(static_cast<std::size_t>(delay_ticks)) {
     restart();
   }
@@ -51,8 +51,8 @@ class WorkAccount {
 
  private:
   std::size_t delay_;
-  std::array<Eigen::Vector3d, EnergyGuardSettings::kDelayMost + 1> efforts_;   // newest first
-  std::array<Eigen::Vector3d, EnergyGuardSettings::kDelayMost + 1> programs_;  // as efforts_, N
+  std::array<Eigen::Vector3d, EnergyGuardSettings::kDelayMax + 1> efforts_;   // newest first
+  std::array<Eigen::Vector3d, EnergyGuardSettings::kDelayMax + 1> programs_;  // as efforts_, N
   Eigen::Vector3d f_program_W_{0, 0, 0};
   bool program_ = false;  // a program has requested a force
   double stored_ = 0;     // J

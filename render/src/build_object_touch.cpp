@@ -89,7 +89,7 @@ Built stiff_touch(const StillSurface& still, const ContactChoice& choice,
   return with_contact_of(choice.tracker, [&]<class Contact>(std::type_identity<Contact>) -> Built {
     if constexpr (std::is_same_v<Contact, GodObjectContact>) {
       return build_surface_touch(Contact(still.mesh, still.search), surface);
-    } else if constexpr (std::is_same_v<Contact, MemoryContact>) {
+    } else if constexpr (std::is_same_v<Contact, InMemoryContact>) {
       return build_surface_touch(Contact(still.packed, still.search), surface);
     } else {
       return mesh_touch<Contact>(still, choice, surface);

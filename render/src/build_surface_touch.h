@@ -42,9 +42,9 @@ std::unique_ptr<ObjectTouch> build_surface_touch(Contact contact, const SurfaceC
   if (surface.effects.empty())
     return adapt_law(ContactForceLaw(std::move(bounded), surface.spring));
   StageList stages = stage_list(surface);
-  if (!stages.needs_foot())
+  if (!stages.needs_closest_point())
     return adapt_law(ContactForceLaw(std::move(bounded), std::move(stages)));
-  return adapt_law(ContactForceLaw(std::move(bounded), FootStageList(std::move(stages))));
+  return adapt_law(ContactForceLaw(std::move(bounded), ClosestPointStageList(std::move(stages))));
 }
 
 }  // namespace thimble::render

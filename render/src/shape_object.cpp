@@ -34,9 +34,10 @@ Built shaped(std::shared_ptr<MovingMesh> mesh, Contact contact, const SurfaceCho
         std::make_unique<ShapedTouch<decltype(touch)>>(std::move(touch), std::move(shape)));
   };
   StageList stages = stage_list(surface);
-  if (!stages.needs_foot()) return built(ContactForceLaw(std::move(moving), std::move(stages)));
+  if (!stages.needs_closest_point())
+    return built(ContactForceLaw(std::move(moving), std::move(stages)));
   moving.keep_material();
-  return built(ContactForceLaw(std::move(moving), FootStageList(std::move(stages))));
+  return built(ContactForceLaw(std::move(moving), ClosestPointStageList(std::move(stages))));
 }
 
 // Returns the maximum number of triangles of a mesh that grows; 0 if it does not grow.
@@ -70,9 +71,9 @@ Built shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
       choice.blending.value_or(smooth ? BlendingChoice::kPhong : BlendingChoice::kFlat);
   const bool god_object = choice.tracker == TrackerChoice::kGodObject;
   const bool known = choice.tracker == TrackerChoice::kEdgePlanes || smooth || god_object;
-  const bool goes = (blending == BlendingChoice::kPhong && !god_object) ||
-                    (blending == BlendingChoice::kFlat && !smooth);
-  if (!known || !goes || choice.curved_depth.value_or(false)) {
+  const bool compatible = (blending == BlendingChoice::kPhong && !god_object) ||
+                          (blending == BlendingChoice::kFlat && !smooth);
+  if (!known || !compatible || choice.curved_depth.value_or(false)) {
     return driver::Error{
         "A surface that changes shape needs the tracker \"edge_planes\" (blending flat or phong), "
         "\"offset\" or \"god_object\", without curved_depth. Set one of these in contact."};
@@ -100,7 +101,7 @@ Built shaped_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
   options.crease_angle = choice.crease_angle.value_or(kCreaseAngle);
   if (choice.blending == BlendingChoice::kFixedBand ||
       choice.blending == BlendingChoice::kSizedBand) {
-    options.hollow_crease_angle = kHollowCreaseAngleOfBands;
+    options.concave_crease_angle = kConcaveCreaseAngleOfBands;
   }
   const auto mesh = std::make_shared<MovingMesh>(std::move(prepared).value(), options);
   if (god_object) {

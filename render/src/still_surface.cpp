@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "mesh/repair/sound_mesh.h"
+#include "mesh/repair/checked_mesh.h"
 #include "search/make_search.h"
 
 namespace thimble::render {
@@ -45,7 +45,7 @@ driver::Result<void> check_choice(const ContactChoice& choice) {
 driver::Result<StillSurface> prepare_packed(const TriangleMesh& mesh_W,
                                             const ContactChoice& choice) {
   // Also checks the whole mesh, so that faults are reported as for all other trackers.
-  auto looked = look_at_mesh_beside(mesh_W, true);
+  auto looked = check_contact_mesh_async(mesh_W, true);
   PackedSurfaceOptions options;
   if (choice.crease_angle) options.crease_angle = *choice.crease_angle;
   auto packed = PackedSurface::build(mesh_W, options);
@@ -106,7 +106,7 @@ driver::Result<StillSurface> prepare_still_surface(const TriangleMesh& mesh_W,
   still.normals = std::make_shared<const SmoothNormals>(
       *still.mesh, choice.crease_angle.value_or(kCreaseAngle),
       choice.normals.value_or(NormalWeights::kFitted),
-      in_bands ? kHollowCreaseAngleOfBands : kHollowCreaseAngle);
+      in_bands ? kConcaveCreaseAngleOfBands : kConcaveCreaseAngle);
   return still;
 }
 

@@ -13,7 +13,7 @@ namespace thimble::render {
 
 /// Calls `use` with the contact stage of a tracker as a type (std::type_identity) and returns its
 /// result. The only place that maps tracker names to classes. A stage over a ContactMesh is built
-/// from mesh and search; OffsetContact also takes normals, MemoryContact packed triangles.
+/// from mesh and search; OffsetContact also takes normals, InMemoryContact packed triangles.
 template <class Use>
 auto with_contact_of(TrackerChoice tracker, Use&& use) {
   switch (tracker) {
@@ -26,7 +26,7 @@ auto with_contact_of(TrackerChoice tracker, Use&& use) {
     case TrackerChoice::kGodObject:
       return use(std::type_identity<GodObjectContact>());
     case TrackerChoice::kPacked:
-      return use(std::type_identity<MemoryContact>());
+      return use(std::type_identity<InMemoryContact>());
   }
   return use(std::type_identity<MeshContact>());
 }

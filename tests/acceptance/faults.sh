@@ -16,7 +16,7 @@ simulated_rows() {  # simulated_rows LINES
       if (!(key in seen)) { seen[key] = 1; order[++n] = key }
       if ($4 != "opening") { promise[key] = $5; limit[key] = $7 }
       value = $6
-      sub(/goes on|continues/, "-", value)
+      sub(/continues/, "-", value)
       cell[key "|" $4] = value
     }
     END {

@@ -30,7 +30,7 @@ void* take(std::size_t size, std::size_t alignment) {
   return whole + before;
 }
 
-void give_back(void* piece, std::size_t alignment) {
+void release(void* piece, std::size_t alignment) {
   if (piece == nullptr) return;
   std::byte* const whole = static_cast<std::byte*>(piece) - room_before(alignment);
   std::size_t size = 0;
@@ -48,19 +48,20 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
   return take(size, static_cast<std::size_t>(alignment));
 }
 void operator delete(void* piece) noexcept {
-  give_back(piece, 1);
+  release(piece, 1);
 }
 void operator delete(void* piece, std::size_t) noexcept {
-  give_back(piece, 1);
+  release(piece, 1);
 }
 void operator delete(void* piece, std::align_val_t alignment) noexcept {
-  give_back(piece, static_cast<std::size_t>(alignment));
+  release(piece, static_cast<std::size_t>(alignment));
 }
 void operator delete(void* piece, std::size_t, std::align_val_t alignment) noexcept {
-  give_back(piece, static_cast<std::size_t>(alignment));
+  release(piece, static_cast<std::size_t>(alignment));
 }
 
-// Touches one cost subject for some strokes, so that callgrind can count the instructions of a tick:
+// Touches one cost subject for some strokes, so that callgrind can count the instructions of a
+// tick:
 //   effect_ticks SUBJECT STROKES      prints the bytes that the object holds
 // Linked with all effects and with fewer (effect_table.cpp): the counts must be the same.
 int main(int argc, char** argv) {

@@ -26,7 +26,7 @@ python3 "$source/tests/arch/extending.py" . --check
 finds 'is in 0 lines' render/src/effect/effect_table.cpp 's/"surface\/friction\/dahl.h"/"surface\/friction\/dahls.h"/'
 finds 'is in 2 lines' render/CMakeLists.txt 's/^.*friction\/dahl.cpp/&\n&/'
 finds 'A friction law: the table must not list - *, must list render/CMakeLists.txt' $rendering '/^| `render\/CMakeLists.txt`/d'
-finds 'must say' $rendering 's/^\(| \[a texture\](#a-texture) | \)4/\15/'
+finds 'must say' $rendering 's/^\(| \[a texture\](#a-texture) | \)5/\16/'
 finds 'clang-format' $page 's/^  double worst = 0;/   double worst = 0;/'
 finds 'there is no file' $page 's/^In `app\/studies\/studies.cpp`/In `app\/studies\/study_list.cpp`/'
 finds 'no sentence above says where' $rendering '/^## A tracker/,$s/^Test:$//'

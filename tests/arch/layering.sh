@@ -111,7 +111,7 @@ forbid_app session '(report|stability|studies|view|bringup|compat|ros2|hil|web|c
 # other; only the code that registers them includes them all (run_records.h).
 forbid app/session/include '(observers|recording|share)/|[a-z_0-9]*\.h"|hdf5|yaml-cpp|fmt/' \
   "a private header, or a library that only sources use"
-for observer in observers/black_box observers/dent_record observers/latest_tick observers/page_server \
+for observer in observers/black_box observers/dent_record observers/latest_tick observers/virtual_time_pager \
     observers/pose_record observers/trace recording/recording_switch share/live_control share/run_sharing; do
   found=$(grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"(observers/|recording/recording_switch|share/(live_control|run_sharing))' \
     app/session/src/"$observer".h app/session/src/"$observer".cpp 2>/dev/null |

@@ -101,7 +101,7 @@ echo "$(wc -l <"$planted") forbidden includes, each reported"
 
 # A source that relies on the includes of joined sources, and folders with too many sources.
 make_copy
-sed -i '/Eigen.Geometry/d' "$copy/app/stability/rest_warnings.cpp" "$copy/tests/unit/render/search/built_in_halves_test.cpp"
+sed -i '/Eigen.Geometry/d' "$copy/app/stability/rest_warnings.cpp" "$copy/tests/unit/render/search/parallel_build_test.cpp"
 sed -i '/Eigen.LU/d' "$copy/app/twin/drive_train_twin.cpp"
 echo '// std::ofstream(file) << text;' >>"$copy/app/report/figure_output.cpp"
 for folder in driver/src device_sim/src/plant render/src/search app/view tests/support; do
@@ -109,7 +109,7 @@ for folder in driver/src device_sim/src/plant render/src/search app/view tests/s
 done
 bash "$here/layering.sh" "$copy" >"$said" || true
 for line in '  app/report/figure_output.cpp:' 'app/stability/rest_warnings.cpp calls cross()' 'app/twin/drive_train_twin.cpp calls inverse()' \
-  'tests/unit/render/search/built_in_halves_test.cpp calls cross()' \
+  'tests/unit/render/search/parallel_build_test.cpp calls cross()' \
   'driver/src: ' 'device_sim/src/plant: ' 'render/search: ' 'app/view: ' 'tests/support: '; do
   grep -qF -- "$line" "$said" || {
     echo "layering.sh did not report: $line"

@@ -128,6 +128,8 @@ def main():
         patterns = [pattern for pattern in checked if fnmatch.fnmatch(name, pattern)]
         if not count and not patterns or not (source / name).is_file():
             continue
+        if name.startswith("tests/arch/words"):  # the list of the banned words itself
+            continue
         matched.update(patterns)
         try:
             text = prose(name, (source / name).read_text())

@@ -223,7 +223,7 @@ class Bench {
       return;
     }
     const std::size_t surface_bytes = surface.value().bytes();
-    render::MemoryContact contact(std::move(surface).value());
+    render::InMemoryContact contact(std::move(surface).value());
     add(name + ": build", seconds_since(begin), "s", triangles == 1000000 ? "<= 0.5" : "");
     add(name + ": memory",
         static_cast<double>(surface_bytes + contact.search().bytes()) /
@@ -267,7 +267,7 @@ class Bench {
       const Path slow = path_over(shape, 0.3e-3, 1000);
       // As the servo loop does in real time (ServoSettings::prepare_ns): the query uses a copy.
       const auto prepare = [&](const Vector3d& expected) {
-        render::MemoryContact guess = contact;
+        render::InMemoryContact guess = contact;
         driver::DeviceState there;
         there.p_WT = expected;
         guess.update(there);

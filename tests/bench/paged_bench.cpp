@@ -149,7 +149,7 @@ class Bench {
     add(size + ": generate, memory", megabytes(studies::resident_memory().now), "MiB");
     add(size + ": page file", static_cast<double>(std::filesystem::file_size(file)) / 1e6, "MB");
     begin = Clock::now();
-    auto reference = render::MemoryContact::build(ring_mesh(1'000'000));
+    auto reference = render::InMemoryContact::build(ring_mesh(1'000'000));
     if (!reference) return false;
     for (const bool cold : {false, true}) {
       if (!slide(size + (cold ? ", disk cache emptied" : ""), file, *reference, cold)) return false;
@@ -171,7 +171,7 @@ class Bench {
   }
 
   bool slide(const std::string& name, const std::filesystem::path& file,
-             render::MemoryContact& reference, bool cold) {
+             render::InMemoryContact& reference, bool cold) {
     if (cold) forget(file);
     auto opened = render::PagedSurface::open(file);
     if (!opened) {

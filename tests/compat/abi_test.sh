@@ -7,8 +7,8 @@ libraries=$1 source=$2
 shift 2
 bad=0
 for pair; do
-  face=${pair%%=*} library=$libraries/lib${pair#*=}.so
-  table=$source/app/compat/$face/symbols.txt
+  api=${pair%%=*} library=$libraries/lib${pair#*=}.so
+  table=$source/app/compat/$api/symbols.txt
   if ! diff <(grep -E '^[A-Za-z]' "$table" | LC_ALL=C sort) \
       <(nm -D --defined-only "$library" | awk '{sub(/@.*/, "", $3); print $3}' | LC_ALL=C sort -u); then
     echo "FAILED: $library does not export what $table says (< table, > library)"

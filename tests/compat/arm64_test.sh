@@ -20,21 +20,21 @@ mkdir lib clients
 
 # library NAME API [FLAG...]: libNAME.so from the sources of an API and of the core, as app/compat/CMakeLists.txt makes it.
 library() {
-  local name=$1 face=$2 source objects=()
-  mkdir -p "$face"
-  for source in "$compat/$face"/*.cpp "$compat"/core/*.cpp; do
-    objects+=("$face/$(basename "$source").o")
+  local name=$1 api=$2 source objects=()
+  mkdir -p "$api"
+  for source in "$compat/$api"/*.cpp "$compat"/core/*.cpp; do
+    objects+=("$api/$(basename "$source").o")
     aarch64-linux-gnu-g++ -std=c++20 -O1 -fPIC -Wno-psabi \
       -I"$version_folder" -I"$source_dir/app" -I"$headers" -I"$source_dir/driver/include" -I"$source_dir/driver/src" \
       -isystem "$eigen" -c "$source" -o "${objects[-1]}" || return
   done
   {
     echo '{ global:'
-    sed -nE 's/^([A-Za-z].*)/\1;/p' "$compat/$face/symbols.txt"
+    sed -nE 's/^([A-Za-z].*)/\1;/p' "$compat/$api/symbols.txt"
     echo 'local: *; };'
-  } >"$face.map"
+  } >"$api.map"
   aarch64-linux-gnu-g++ -shared "${objects[@]}" -static-libstdc++ -static-libgcc -pthread \
-    -Wl,--version-script="$face.map" -Wl,--no-undefined -o "lib/lib$name.so"
+    -Wl,--version-script="$api.map" -Wl,--no-undefined -o "lib/lib$name.so"
 }
 expect 0 '' library HD hd
 expect 0 '' library hdPhantom hdphantom

@@ -34,7 +34,8 @@ bool fault_stays(bool may_activate) {
   auto sink = [](const driver::TickRecord&) noexcept {};
   const std::atomic<bool> never{false};
   driver::run_servo(arm.device(), arm.clock(), driver::ForceLaw(law), driver::TickSink(sink),
-                    {.period_ns = arm.period_ns(), .ticks = 1000, .outlive_faults = true}, never);
+                    {.period_ns = arm.period_ns(), .ticks = 1000, .continue_after_faults = true},
+                    never);
   EXPECT_GE(tick, 900);
   return in_fault;
 }

@@ -66,17 +66,17 @@ TEST(CompatCore, LimitsTheForceAndReportsIt) {
   arms::enable_force(0, true);
   ArmReading reading;
   bool limited = false;
-  double most = 0;
+  double max_force = 0;
   for (int i = 0; i < 500; ++i) {
     arms::ask_force(0, {.f_W = {0, 0, 50}});
     arms::wait_until_taken(0);
     arms::read(0, reading);
     limited = limited || reading.cuts.limited;
-    most = std::max(most, vector(reading.f_sent_W).norm());
+    max_force = std::max(max_force, vector(reading.f_sent_W).norm());
   }
   EXPECT_TRUE(limited || reading.fault != driver::Fault::kNone);
-  EXPECT_LE(most, arms::facts(0).force_max * (1 + 1e-9));
-  EXPECT_GT(most, 0);
+  EXPECT_LE(max_force, arms::facts(0).force_max * (1 + 1e-9));
+  EXPECT_GT(max_force, 0);
 }
 
 TEST(CompatCore, ForceWithoutRenewalBecomesZeroAndReturnsSlowly) {
@@ -195,7 +195,7 @@ TEST(CompatCore, ReadsAHandPathAndNamesWrongLines) {
 TEST(CompatCore, RefusesUnknownAndClosedArms) {
   ExecRig rig;
   ArmReading reading;
-  for (const int arm : {-1, 0, 1, kArmsMost, 1'000'000}) {
+  for (const int arm : {-1, 0, 1, kArmsMax, 1'000'000}) {
     EXPECT_FALSE(arms::read(arm, reading));
     EXPECT_FALSE(arms::ask_force(arm, {}));
     EXPECT_FALSE(arms::wait_until_taken(arm));
@@ -314,7 +314,7 @@ TEST(CompatCore, SecondProgramChangesNoLimit) {
   EXPECT_EQ(arm.force_limit.load(), 0.5);
   EXPECT_EQ(arm.speed_limit.load(), 0.1);
   EXPECT_EQ(arm.watchdog_ns.load(), 2'000'000);
-  EXPECT_STREQ(arm.face.data(), "test");
+  EXPECT_STREQ(arm.api.data(), "test");
 }
 
 TEST(CompatCore, ArmStaysOpenWhenRefusedProgramEnds) {

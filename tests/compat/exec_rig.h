@@ -75,7 +75,7 @@ class ExecRig {
     });
   }
   ~ExecRig() {
-    for (int arm = 0; arm < kArmsMost; ++arm) {
+    for (int arm = 0; arm < kArmsMax; ++arm) {
       while (arms::close(arm)) {
       }
     }

@@ -177,7 +177,7 @@ TEST_F(HaplyService, SecondServiceOnAPortIsRefused) {
 }
 
 TEST(HaplyServiceMessage, OwnDriverParsesTheMessages) {
-  haply::ToldArm arm;
+  haply::ReportedArm arm;
   arm.device_id = haply::device_id_of(0);
   arm.reading.p_WT = {0.01, -0.02, 0.03};
   arm.reading.v_WT = {0.1, 0.2, -0.3};

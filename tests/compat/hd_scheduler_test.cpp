@@ -25,7 +25,7 @@ struct CompatHdScheduler : ::testing::Test {
   ~CompatHdScheduler() override {
     hdStopScheduler();
     for (const HDSchedulerHandle handle : scheduled) hdUnschedule(handle);
-    for (HHD device = 0; device < kArmsMost; ++device) hdDisableDevice(device);
+    for (HHD device = 0; device < kArmsMax; ++device) hdDisableDevice(device);
     hdSetSchedulerRate(1000);
     while (HD_DEVICE_ERROR(hdGetError())) {
     }
@@ -242,12 +242,12 @@ TEST_F(CompatHdScheduler, ForceIsZeroAfterACallbackStopsTheScheduler) {
   stop = true;
   while (!stopped.load()) std::this_thread::sleep_for(1ms);
   ExecRig::wait(0, 30);
-  double most = 0;
+  double max_force = 0;
   while (stop.load()) {
-    most = std::max(most, rig.motors.force_W().norm());
+    max_force = std::max(max_force, rig.motors.force_W().norm());
     std::this_thread::sleep_for(1ms);
   }
-  EXPECT_EQ(most, 0) << "a stopped scheduler leaves no force";
+  EXPECT_EQ(max_force, 0) << "a stopped scheduler leaves no force";
   ExecRig::wait(0, 50);
   EXPECT_EQ(others.load(), 0) << "later callbacks must not run any more";
   // Frames outside of a scheduler still request forces.
@@ -276,15 +276,15 @@ TEST_F(CompatHdScheduler, RunsEverySecondTickAtHalfTheRate) {
   ExecRig::wait(0, 100);
   // On a busy machine callbacks are skipped: one undisturbed interval shows the rate, none is
   // faster.
-  int most = 0;
-  for (int stretch = 0; stretch < 10 && most < 150; ++stretch) {
+  int max_calls = 0;
+  for (int stretch = 0; stretch < 10 && max_calls < 150; ++stretch) {
     const int before = calls.load();
     ExecRig::wait(0, 400);
-    most = std::max(most, calls.load() - before);
+    max_calls = std::max(max_calls, calls.load() - before);
   }
   hdStopScheduler();
-  EXPECT_LE(most, 205);
-  EXPECT_GE(most, 150);
+  EXPECT_LE(max_calls, 205);
+  EXPECT_GE(max_calls, 150);
   for (const HDulong rate : {0ul, 7ul, 999ul, 1001ul, 100'000ul}) {
     hdSetSchedulerRate(rate);
     EXPECT_EQ(hdGetError().errorCode, HD_INVALID_VALUE) << rate;

@@ -38,7 +38,7 @@ struct CompatHd : ::testing::Test {
   CompatHd() { drain(); }
   ~CompatHd() override {
     hdStopScheduler();
-    for (HHD device = 0; device < kArmsMost; ++device) hdDisableDevice(device);
+    for (HHD device = 0; device < kArmsMax; ++device) hdDisableDevice(device);
     drain();
   }
 };
@@ -223,16 +223,16 @@ TEST_F(CompatHd, ClampsTheForceWithoutErrorIfEnabled) {
   hdEnable(HD_FORCE_OUTPUT);
   std::map<HDerror, int> seen;
   const std::array<double, 3> f{0, 30, 0};
-  double most = 0;
+  double highest = 0;
   ArmReading reading;
   frames(0, 40, [&] {
     hdSetDoublev(HD_CURRENT_FORCE, f.data());
     arms::read(0, reading);
-    most = std::max(most, reading.f_client_W[2]);
+    highest = std::max(highest, reading.f_client_W[2]);
     for (HDErrorInfo e = hdGetError(); HD_DEVICE_ERROR(e); e = hdGetError()) ++seen[e.errorCode];
   });
   EXPECT_EQ(seen[HD_EXCEEDED_MAX_FORCE], 0);
-  EXPECT_DOUBLE_EQ(most, arms::facts(0).force_max);
+  EXPECT_DOUBLE_EQ(highest, arms::facts(0).force_max);
 }
 
 TEST_F(CompatHd, ReportsAFaultUntilForceIsEnabledAgain) {
@@ -335,11 +335,11 @@ TEST_F(CompatHd, ReturnsNumbersInAllFiveTypes) {
 TEST_F(CompatHd, ContinuousForceDefaultsToMaximumForce) {
   ExecRig rig({.arms = {{.arm_file = "falcon"}}});
   hdInitDevice(nullptr);
-  HDdouble most = 0, continuous = 0;
-  hdGetDoublev(HD_NOMINAL_MAX_FORCE, &most);
+  HDdouble max_force = 0, continuous = 0;
+  hdGetDoublev(HD_NOMINAL_MAX_FORCE, &max_force);
   hdGetDoublev(HD_NOMINAL_MAX_CONTINUOUS_FORCE, &continuous);
-  EXPECT_EQ(most, 8);
-  EXPECT_EQ(continuous, most);
+  EXPECT_EQ(max_force, 8);
+  EXPECT_EQ(continuous, max_force);
 }
 
 TEST_F(CompatHd, ErrorWithoutAnArmNamesThimbleExec) {

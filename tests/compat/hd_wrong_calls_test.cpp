@@ -38,7 +38,7 @@ HDCallbackCode done(void*) {
 struct CompatHdWrongCalls : ::testing::Test {
   ~CompatHdWrongCalls() override {
     hdStopScheduler();
-    for (HHD device = 0; device < kArmsMost; ++device) hdDisableDevice(device);
+    for (HHD device = 0; device < kArmsMax; ++device) hdDisableDevice(device);
     clear_errors();
   }
   ExecRig rig;
@@ -317,7 +317,7 @@ TEST(CompatHdFuzz, SurvivesAnyCallsFromSeveralThreads) {
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(calls.load(), kCalls * static_cast<int>(kThreads));
   hdStopScheduler();
-  for (HHD device = 0; device < kArmsMost; ++device) hdDisableDevice(device);
+  for (HHD device = 0; device < kArmsMax; ++device) hdDisableDevice(device);
   clear_errors();
   // The library is still usable.
   ASSERT_EQ(hdInitDevice(nullptr), 0u);

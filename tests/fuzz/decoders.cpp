@@ -24,7 +24,7 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-void promise(bool kept, const char* what) {
+void check(bool kept, const char* what) {
   if (kept) return;
   std::fprintf(stderr, "Check of a decoder failed: %s\n", what);
   std::abort();
@@ -34,7 +34,7 @@ template <class Decode, class Encode>
 bool comes_back(Bytes bytes, Decode decode, Encode encode, const char* what) {
   const auto meaning = decode(bytes);
   if (!meaning) return false;
-  promise(decode(encode(*meaning)) == meaning, what);
+  check(decode(encode(*meaning)) == meaning, what);
   return true;
 }
 
@@ -46,9 +46,9 @@ bool line_comes_back(Bytes bytes, std::optional<Line> (*decode)(Bytes) noexcept,
   if (!meaning) return false;
   std::array<std::byte, driver::hfab::kLineCapacity> buffer{};
   const std::size_t size = encode(*meaning, buffer);
-  promise(size <= buffer.size(), "a line fits its buffer");
-  promise(decode(Bytes(buffer).first(size)) == meaning,
-          "an encoded line is decoded to the same values");
+  check(size <= buffer.size(), "a line fits its buffer");
+  check(decode(Bytes(buffer).first(size)) == meaning,
+        "an encoded line is decoded to the same values");
   return true;
 }
 
@@ -60,8 +60,8 @@ bool find_frames(Bytes bytes) {
     const std::size_t length =
         std::min<std::size_t>(bytes.size(), 1 + std::to_integer<unsigned>(bytes[0]) % 64);
     driver::for_each_ftdi_packet(bytes.first(length), [&](Bytes part) {
-      promise(part.size() <= driver::kFtdiPacketSize - driver::kFtdiStatusSize,
-              "a packet's content is shorter than the packet");
+      check(part.size() <= driver::kFtdiPacketSize - driver::kFtdiStatusSize,
+            "a packet's content is shorter than the packet");
       finder.push(part);
     });
     bytes = bytes.subspan(length);
@@ -70,9 +70,9 @@ bool find_frames(Bytes bytes) {
     const std::size_t size = finder.take(buffer, skipped);
     if (size == 0) continue;
     any = true;
-    promise(size >= 2 && size <= 16, "a message has a valid size");
-    promise(buffer[0] == std::byte{'<'} && buffer[size - 1] == std::byte{'>'},
-            "a message has its delimiters");
+    check(size >= 2 && size <= 16, "a message has a valid size");
+    check(buffer[0] == std::byte{'<'} && buffer[size - 1] == std::byte{'>'},
+          "a message has its delimiters");
   }
   return any;
 }
@@ -83,8 +83,8 @@ template <class Wire>
 bool reads(Bytes bytes) {
   driver::ArmReading reading{.counts = {11, 22, 33}, .auxiliary = {44, 55, 66}, .buttons = 77};
   if (Wire::decode(bytes, reading)) return true;
-  promise(reading.counts == std::array<std::int32_t, 3>{11, 22, 33} && reading.buttons == 77,
-          "a rejected report does not change the reading");
+  check(reading.counts == std::array<std::int32_t, 3>{11, 22, 33} && reading.buttons == 77,
+        "a rejected report does not change the reading");
   return false;
 }
 
@@ -94,25 +94,25 @@ bool usbip_decode(Bytes bytes) {
   usb::UsbipRequest request;
   const bool asked = usb::decode_request(bytes, request) == usb::Decode::kWhole;
   if (asked) {
-    promise(request.size <= bytes.size(), "a request lies within its bytes");
+    check(request.size <= bytes.size(), "a request lies within its bytes");
     const auto again = usb::encode_request(request);
     usb::UsbipRequest same;
-    promise(usb::decode_request(again, same) == usb::Decode::kWhole,
-            "an encoded request is decoded to the same request");
+    check(usb::decode_request(again, same) == usb::Decode::kWhole,
+          "an encoded request is decoded to the same request");
     // A bus id that fills its field loses its last character to the terminating zero.
-    promise(request.bus_id.starts_with(same.bus_id), "an encoded bus id is decoded to the same id");
+    check(request.bus_id.starts_with(same.bus_id), "an encoded bus id is decoded to the same id");
   }
   usb::UsbipCommand command;
   if (usb::decode_command(bytes, command) != usb::Decode::kWhole) return asked;
-  promise(command.size <= bytes.size() && command.length <= usb::kTransferMax,
-          "a command lies within its bytes");
+  check(command.size <= bytes.size() && command.length <= usb::kTransferMax,
+        "a command lies within its bytes");
   const Bytes data = bytes.first(command.size).subspan(usb::kUsbipHeaderSize);
   usb::UsbipCommand same;
-  promise(usb::decode_command(usb::encode_command(command, data), same) == usb::Decode::kWhole,
-          "an encoded command is decoded to the same command");
-  promise(same.sequence == command.sequence && same.setup == command.setup &&
-              same.length == command.length && same.unlinked == command.unlinked,
-          "a re-encoded command has the same values");
+  check(usb::decode_command(usb::encode_command(command, data), same) == usb::Decode::kWhole,
+        "an encoded command is decoded to the same command");
+  check(same.sequence == command.sequence && same.setup == command.setup &&
+            same.length == command.length && same.unlinked == command.unlinked,
+        "a re-encoded command has the same values");
   return true;
 }
 
@@ -133,17 +133,17 @@ class Obliging final : public device_sim::usb::UsbDevice {
   void advance_to(std::int64_t) noexcept override {}
   device_sim::usb::PacketResult control(const device_sim::usb::SetupPacket& setup,
                                         std::span<std::byte> data) noexcept override {
-    promise(data.size() <= setup.length,
-            "a device is asked for at most the length in the setup packet");
+    check(data.size() <= setup.length,
+          "a device is asked for at most the length in the setup packet");
     return {device_sim::usb::Answer::kDone, data.size()};
   }
   device_sim::usb::PacketResult in(std::uint8_t, std::span<std::byte> packet) noexcept override {
-    promise(packet.size() >= kPacketMax, "a device has room for a packet");
+    check(packet.size() >= kPacketMax, "a device has room for a packet");
     return {device_sim::usb::Answer::kDone, ++count_ % 70};
   }
   device_sim::usb::PacketResult out(std::uint8_t,
                                     std::span<const std::byte> packet) noexcept override {
-    promise(packet.size() <= kPacketMax, "a packet does not exceed the maximum packet size");
+    check(packet.size() <= kPacketMax, "a packet does not exceed the maximum packet size");
     return {device_sim::usb::Answer::kDone, packet.size()};
   }
 
@@ -172,9 +172,9 @@ bool usbip_session(Bytes bytes) {
   session.send_bulk();
   for (int frame = 2; frame < 5; ++frame) session.frame(frame * 1'000'000);
   const auto& counters = session.counters();
-  promise(counters.completed + counters.stalled + counters.babbled + counters.unlinked <=
-              counters.submitted,
-          "there are no more answers than requests");
+  check(counters.completed + counters.stalled + counters.babbled + counters.unlinked <=
+            counters.submitted,
+        "there are no more answers than requests");
   return session.state() == usb::UsbipSession::State::kAttached && counters.completed > 1;
 }
 
@@ -182,8 +182,8 @@ bool usbip_session(Bytes bytes) {
 bool hid_descriptor(Bytes bytes) {
   constexpr std::size_t kLengthMax = 1U << 16;
   const driver::HidReports reports = driver::read_hid_descriptor(bytes);
-  promise(reports.in_bytes <= kLengthMax && reports.out_bytes <= kLengthMax,
-          "a report has a valid length");
+  check(reports.in_bytes <= kLengthMax && reports.out_bytes <= kLengthMax,
+        "a report has a valid length");
   return reports.in_bytes > 0;
 }
 
@@ -192,7 +192,7 @@ bool space_mouse(Bytes bytes) {
   const view::SpaceMouseState before{.translation = {1, 2, 3}, .rotation = {4, 5, 6}};
   view::SpaceMouseState state = before;
   if (view::take_space_mouse_report(bytes, state)) return true;
-  promise(state == before, "a rejected report does not change the state");
+  check(state == before, "a rejected report does not change the state");
   return false;
 }
 

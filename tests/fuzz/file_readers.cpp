@@ -31,7 +31,7 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-void promise(bool kept, const char* what) {
+void check(bool kept, const char* what) {
   if (kept) return;
   std::fprintf(stderr, "Check of a file reader failed: %s\n", what);
   std::abort();
@@ -64,24 +64,24 @@ std::filesystem::path store(Bytes bytes, const char* name) {
 }
 
 template <class T>
-bool told(const driver::Result<T>& result) {
-  if (!result) promise(!result.error().message.empty(), "an error has a message");
+bool accepted(const driver::Result<T>& result) {
+  if (!result) check(!result.error().message.empty(), "an error has a message");
   return static_cast<bool>(result);
 }
 
 bool read_scene_file(Bytes bytes) {
   static const bool arm_beside = std::filesystem::copy_file(
       THIMBLE_SOURCE_DIR "/app/arms/vintage_phantom.yaml", folder() / "arm.yaml");
-  promise(arm_beside, "the arm file is next to the scene");
+  check(arm_beside, "the arm file is next to the scene");
   const auto scene = scene::load_scene(store(bytes, "any.yaml"),
                                        {.mesh_folder = THIMBLE_SOURCE_DIR "/tests/data/meshes"});
-  if (!told(scene)) return false;
-  promise(std::isfinite(scene->duration) && scene->duration > 0, "a scene has a duration");
-  promise(std::isfinite(scene->rate) && scene->rate > 0, "a scene has a rate");
+  if (!accepted(scene)) return false;
+  check(std::isfinite(scene->duration) && scene->duration > 0, "a scene has a duration");
+  check(std::isfinite(scene->rate) && scene->rate > 0, "a scene has a rate");
   // Patches of a body may take long to build; random scenes are kept small.
   if (scene->objects.size() > 4) return true;
   const auto objects = scene::SceneObjects::build(*scene);
-  if (!told(objects)) return true;
+  if (!accepted(objects)) return true;
   render::SceneTouch& touch = (*objects)->touch();
   driver::DeviceState state;
   state.dt = 1e-3;
@@ -101,15 +101,15 @@ bool read_scene_file(Bytes bytes) {
 
 bool read_mesh(Bytes bytes, const char* name) {
   const auto mesh = render::load_mesh(store(bytes, name));
-  if (!told(mesh)) return false;
-  promise(!mesh->triangles.empty(), "a mesh has triangles");
+  if (!accepted(mesh)) return false;
+  check(!mesh->triangles.empty(), "a mesh has triangles");
   for (const auto& vertex : mesh->vertices) {
-    promise(vertex.cwiseAbs().maxCoeff() <= 1e15, "a vertex has valid coordinates");
+    check(vertex.cwiseAbs().maxCoeff() <= 1e15, "a vertex has valid coordinates");
   }
   for (const auto& triangle : mesh->triangles) {
     for (const std::int32_t corner : triangle) {
-      promise(corner >= 0 && static_cast<std::size_t>(corner) < mesh->vertices.size(),
-              "a triangle has vertices");
+      check(corner >= 0 && static_cast<std::size_t>(corner) < mesh->vertices.size(),
+            "a triangle has vertices");
     }
   }
   if (mesh->triangles.size() > 2000) return true;
@@ -146,11 +146,11 @@ std::vector<std::byte> damaged(std::vector<std::byte> file, Bytes orders) {
 
 std::vector<std::byte> sound_pages() {
   const auto mesh = render::load_mesh(THIMBLE_SOURCE_DIR "/tests/data/meshes/box.off");
-  promise(static_cast<bool>(mesh), "a valid mesh is read");
+  check(static_cast<bool>(mesh), "a valid mesh is read");
   const auto surface = render::PackedSurface::build(*mesh, {});
-  promise(static_cast<bool>(surface), "a valid mesh is packed");
+  check(static_cast<bool>(surface), "a valid mesh is packed");
   const std::filesystem::path path = folder() / "sound.pages";
-  promise(static_cast<bool>(render::write_page_file(*surface, path)), "pages can be written");
+  check(static_cast<bool>(render::write_page_file(*surface, path)), "pages can be written");
   return bytes_of(path);
 }
 
@@ -180,7 +180,7 @@ void touch_pages(const std::filesystem::path& pages) {
   object.contact.tracker = render::TrackerChoice::kPacked;
   scene.objects.push_back(object);
   const auto objects = scene::SceneObjects::build(scene);
-  if (!told(objects)) return;
+  if (!accepted(objects)) return;
   driver::DeviceState state;
   state.dt = 1e-3;
   state.fresh = true;
@@ -199,16 +199,16 @@ bool read_pages(Bytes bytes) {
   if (rehash) put_checksums_right(whole);
   const std::filesystem::path path = store(whole, "any.pages");
   const auto file = render::PageFile::open(path);
-  if (!told(file)) return false;
-  promise(file->triangle_count() > 0, "a page file has triangles");
+  if (!accepted(file)) return false;
+  check(file->triangle_count() > 0, "a page file has triangles");
   std::vector<render::PackedTriangle> records(render::kPageTriangles);
   std::int64_t in_all = 0;
   for (std::size_t page = 0; page < file->boxes().size(); ++page) {
     const std::int32_t count = file->read_page(static_cast<std::int32_t>(page), records);
-    promise(count >= 0 && count <= render::kPageTriangles, "a page fits its buffer");
+    check(count >= 0 && count <= render::kPageTriangles, "a page fits its buffer");
     in_all += count;
   }
-  promise(in_all <= file->triangle_count(), "pages hold no more triangles than announced");
+  check(in_all <= file->triangle_count(), "pages hold no more triangles than announced");
   touch_pages(path);
   return true;
 }
@@ -220,18 +220,18 @@ std::vector<std::byte> sound_recording() {
   info.scene = "fuzz";
   info.rate = 1000;
   const std::filesystem::path path = folder() / "sound.h5";
-  promise(static_cast<bool>(session::write_recording(path, info, ticks)),
-          "a recording can be written");
+  check(static_cast<bool>(session::write_recording(path, info, ticks)),
+        "a recording can be written");
   return bytes_of(path);
 }
 
 bool read_recording(Bytes bytes) {
   static const std::vector<std::byte> sound = sound_recording();
   const auto recording = session::read_recording(store(damaged(sound, bytes), "any.h5"));
-  if (!told(recording)) return false;
-  promise(recording->info.rate > 0, "a recording has a rate");
+  if (!accepted(recording)) return false;
+  check(recording->info.rate > 0, "a recording has a rate");
   for (const driver::TickRecord& tick : recording->ticks) {
-    promise(!name(tick.fault).empty(), "a tick's fault has a name");
+    check(!name(tick.fault).empty(), "a tick's fault has a name");
   }
   return true;
 }
@@ -240,7 +240,7 @@ bool read_recording(Bytes bytes) {
 
 bool read_any_file(std::string_view kind, Bytes bytes) {
   if (kind == "scene") return read_scene_file(bytes);
-  if (kind == "arm") return told(scene::load_arm(store(bytes, "any.yaml")));
+  if (kind == "arm") return accepted(scene::load_arm(store(bytes, "any.yaml")));
   if (kind == "off") return read_mesh(bytes, "any.off");
   if (kind == "obj") return read_mesh(bytes, "any.obj");
   if (kind == "stl") return read_mesh(bytes, "any.stl");
@@ -253,7 +253,7 @@ bool read_any_file(std::string_view kind, Bytes bytes) {
   if (kind == "3ds") return read_mesh(bytes, "any.3ds");
   if (kind == "page") return read_pages(bytes);
   if (kind == "recording") return read_recording(bytes);
-  promise(false, "the kind of file is known");
+  check(false, "the kind of file is known");
   return false;
 }
 

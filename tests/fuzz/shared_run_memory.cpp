@@ -15,7 +15,7 @@
 namespace thimble::fuzz {
 namespace {
 
-void promise(bool kept, const char* what) {
+void check(bool kept, const char* what) {
   if (kept) return;
   std::fprintf(stderr, "Check of a viewer failed: %s\n", what);
   std::abort();
@@ -40,7 +40,7 @@ std::vector<std::byte> sound_memory() {
                            .vertex_count = 3,
                            .first_triangle = 1,
                            .triangle_count = 2,
-                           .splits_most = 2});
+                           .max_splits = 2});
   scene.knobs.push_back({"a: stiffness", "N/m", 0, 800, 400});
   const auto run = session::SharedRun::create("", scene, 8).value();
   run->set_state(session::RunState::kRunning);
@@ -80,16 +80,16 @@ void read_everything(session::SharedReader& reader) {
   const session::SharedScene& scene = reader.scene();
   for (const auto& triangle : scene.triangles) {
     for (const std::uint32_t vertex : triangle) {
-      promise(vertex < scene.vertices.size(), "a triangle has vertices");
+      check(vertex < scene.vertices.size(), "a triangle has vertices");
     }
   }
   for (const auto& vertex : scene.vertices)
-    promise(vertex.allFinite(), "a vertex has valid coordinates");
+    check(vertex.allFinite(), "a vertex has valid coordinates");
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const auto& object = scene.objects[i];
-    promise(object.first_vertex + object.vertex_count <= scene.vertices.size() &&
-                object.first_triangle + object.triangle_count <= scene.triangles.size(),
-            "an object is within its tables");
+    check(object.first_vertex + object.vertex_count <= scene.vertices.size() &&
+              object.first_triangle + object.triangle_count <= scene.triangles.size(),
+          "an object is within its tables");
     render::TriangleMesh mesh;
     mesh.vertices.assign(object.vertex_count, Eigen::Vector3d::Zero());
     for (std::size_t t = 0; t < object.triangle_count; ++t) {
@@ -101,18 +101,18 @@ void read_everything(session::SharedReader& reader) {
     }
     reader.shape(i, mesh);
     for (const auto& vertex : mesh.vertices)
-      promise(vertex.allFinite(), "a moved vertex has valid coordinates");
+      check(vertex.allFinite(), "a moved vertex has valid coordinates");
     for (const auto& corners : mesh.triangles) {
       for (const std::int32_t vertex : corners) {
-        promise(vertex >= 0 && static_cast<std::size_t>(vertex) < mesh.vertices.size(),
-                "a triangle that was split has vertices");
+        check(vertex >= 0 && static_cast<std::size_t>(vertex) < mesh.vertices.size(),
+              "a triangle that was split has vertices");
       }
     }
   }
   for (std::size_t i = 0; i < scene.knobs.size(); ++i) {
     const auto& knob = scene.knobs[i];
     for (const double value : {reader.knob(i), reader.knob_wanted(i)}) {
-      promise(value >= knob.least && value <= knob.most, "a knob is within its bounds");
+      check(value >= knob.min && value <= knob.max, "a knob is within its bounds");
     }
     reader.turn_knob(i, 1e9);
   }
@@ -122,15 +122,15 @@ void read_everything(session::SharedReader& reader) {
   std::uint64_t serial = 0;
   reader.ticks_since(serial, ticks);
   for (const auto& one : ticks) {
-    promise(one.object < static_cast<int>(scene.objects.size()), "a tick names an object");
-    promise(std::isfinite(one.p_WT[0]) && std::isfinite(one.depth), "a tick has valid coordinates");
+    check(one.object < static_cast<int>(scene.objects.size()), "a tick names an object");
+    check(std::isfinite(one.p_WT[0]) && std::isfinite(one.depth), "a tick has valid coordinates");
     static_cast<void>(session::arm_lines(scene.arms.front(), one));
   }
   session::ScenePoses poses;
   if (reader.poses(poses)) {
-    promise(poses.count <= session::ScenePoses::kMost, "the number of poses is valid");
+    check(poses.count <= session::ScenePoses::kMax, "the number of poses is valid");
     for (std::size_t i = 0; i < poses.count; ++i) {
-      promise(
+      check(
           poses.object[i] >= 0 && static_cast<std::size_t>(poses.object[i]) < scene.objects.size(),
           "a pose names an object");
     }
@@ -139,10 +139,10 @@ void read_everything(session::SharedReader& reader) {
   if (reader.patch(patch) && patch.triangle_count > 0) {
     const auto& object = scene.objects[static_cast<std::size_t>(patch.object)];
     for (std::size_t t = 0; t < patch.triangle_count; ++t) {
-      promise(static_cast<std::size_t>(patch.source[t]) < object.triangle_count,
-              "a patch refers to existing triangles");
+      check(static_cast<std::size_t>(patch.source[t]) < object.triangle_count,
+            "a patch refers to existing triangles");
       for (const auto corner : patch.triangles[t]) {
-        promise(corner < patch.point_count, "a patch has its corners");
+        check(corner < patch.point_count, "a patch has its corners");
       }
     }
   }
@@ -150,9 +150,8 @@ void read_everything(session::SharedReader& reader) {
   static_cast<void>(reader.counters());
   static_cast<void>(reader.recording_path());
   static_cast<void>(reader.notice());
-  promise(
-      reader.speed_asked() >= session::kSpeedLeast && reader.speed_asked() <= session::kSpeedMost,
-      "a speed is within its bounds");
+  check(reader.speed_asked() >= session::kSpeedMin && reader.speed_asked() <= session::kSpeedMax,
+        "a speed is within its bounds");
   static_cast<void>(reader.loop_asked());
   static_cast<void>(reader.ask_speed(1e9));
   static_cast<void>(reader.ask_steps(1'000'000));
@@ -190,7 +189,7 @@ bool read_shared_memory(std::span<const std::byte> bytes) {
   if (rehash) put_checksum_right(memory);
   auto reader = session::SharedReader::over(memory);
   if (!reader) {
-    promise(!reader.error().message.empty(), "an error has a message");
+    check(!reader.error().message.empty(), "an error has a message");
     return false;
   }
   read_everything(**reader);

@@ -12,7 +12,7 @@
 
 namespace thimble_mutants {
 
-constexpr int kMost = 65536;  // mutants
+constexpr int kMax = 65536;  // mutants
 
 struct Chosen {
   int one = -1;
@@ -24,7 +24,7 @@ inline Chosen choose() noexcept {
   if (const char* one = std::getenv("THIMBLE_MUTANT")) chosen.one = std::atoi(one);
   if (const char* name = std::getenv("THIMBLE_MUTANTS_REACHED")) {
     const int file = open(name, O_RDWR | O_CLOEXEC);
-    void* bytes = mmap(nullptr, kMost, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    void* bytes = mmap(nullptr, kMax, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     if (bytes == MAP_FAILED) std::abort();
     chosen.reached = static_cast<unsigned char*>(bytes);
     close(file);

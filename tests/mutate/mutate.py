@@ -14,7 +14,7 @@ from places import mutants_of
 from table import cell, reasons_in, summary, write_table
 from trials import Trials, number_of
 
-LEAST = 0.9  # share that must be killed
+KILLED_MIN = 0.9  # share that must be killed
 
 
 def draw(root, plan, options):
@@ -97,8 +97,8 @@ def main():
                   f"    {reasons.get(cell(mutant.title()), 'no reason given yet')}")
     every = counts["all"]
     print(f"{every.killed} killed, {every.survived} survived, {every.equivalent} equivalent: {100 * every.share():.1f} % "
-          f"(at least {100 * LEAST:.0f} %) in {(time.monotonic() - begin) / 60:.0f} min")
-    return 0 if every.share() >= LEAST else 1
+          f"(at least {100 * KILLED_MIN:.0f} %) in {(time.monotonic() - begin) / 60:.0f} min")
+    return 0 if every.share() >= KILLED_MIN else 1
 
 
 if __name__ == "__main__":

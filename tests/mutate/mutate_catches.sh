@@ -28,7 +28,7 @@ ends() { grep -A2 -F "$1" "$scratch/log" | grep -qF -- "+ $2" || fail "Not print
 
 run
 [ $code = 1 ] || fail "With survivors the exit code is $code instead of 1."
-ends "negated: fails (Counting.StaysWithinTheBound)" 'if (!(x > most)) return most;'
+ends "negated: fails (Counting.StaysWithinTheBound)" 'if (!(x > max)) return max;'
 ends "removed: hangs" 'while (i < n) ;'
 ends "operator: SURVIVED (survived)" 'return x - x;'
 ends "operator: SURVIVED (unreached)" 'return x - 2;'
@@ -38,7 +38,7 @@ grep -qE '\| counting \| [1-9][0-9]* \| 4 \| 0 \|' "$scratch/table.md" || fail "
 [ "$(cat counting/* | cksum)" = "$sources" ] || fail "The sources were changed."
 
 # An equivalent mutant does not count and its reason is kept; with a new test enough mutants are killed.
-sed -i '/x >= most/s/not analysed yet/equivalent: both are equal/' "$scratch/table.md"
+sed -i '/x >= max/s/not analysed yet/equivalent: both are equal/' "$scratch/table.md"
 sed -i 's/^  doubled(2);/  EXPECT_EQ(doubled(2) + tripled(5), 11);/' counting_test.cpp
 run --survivors
 [ $code = 0 ] || fail "With all killed the exit code is $code."
@@ -48,7 +48,7 @@ has "equivalent: both are equal" "$scratch/table.md"
 # Without a mutant every test must pass; a single line can be tested.
 run --again counting/counting.cpp:5
 [ $code = 0 ] || fail "For a single line the exit code is $code."
-sed -i 's/at_most(3, 5), 3/at_most(3, 5), 4/' counting_test.cpp
+sed -i 's/limited(3, 5), 3/limited(3, 5), 4/' counting_test.cpp
 run
 [ $code = 1 ] || fail "For a test that fails without mutants the exit code is $code."
 has "fails in Counting.StaysWithinTheBound without any mutant" "$scratch/log"

@@ -12,7 +12,7 @@ import sys
 import tempfile
 import time
 
-MOST = 65536  # kMost of mutant.h
+MUTANTS_MAX = 65536  # kMax of mutant.h
 QUICK = 0.25  # s of processor time: tests of a program below it run together
 LIMIT_TIMES, LIMIT_MORE = 8, 5  # a run hangs after LIMIT_TIMES its usual time plus LIMIT_MORE s
 MEMORY = 6 << 30
@@ -91,7 +91,7 @@ class Trials:
     def measure_one(self, program, name):
         for attempt in range(3):
             with tempfile.NamedTemporaryFile() as reached:
-                reached.truncate(MOST)
+                reached.truncate(MUTANTS_MAX)
                 code, output, seconds = self.run(program, [name], {"THIMBLE_MUTANTS_REACHED": reached.name}, 600)
                 content = pathlib.Path(reached.name).read_bytes()
             if code == 0:
@@ -130,5 +130,5 @@ class Trials:
 
 
 def number_of(title):
-    """Returns a number below MOST for a mutant that does not depend on changes elsewhere."""
-    return int(hashlib.sha256(title.encode()).hexdigest()[:8], 16) % MOST
+    """Returns a number below MUTANTS_MAX for a mutant that does not depend on changes elsewhere."""
+    return int(hashlib.sha256(title.encode()).hexdigest()[:8], 16) % MUTANTS_MAX

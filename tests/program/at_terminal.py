@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Runs a program at a pseudo-terminal, as a person at the keyboard does.
+"""Runs a program at a pseudo-terminal, like a person at the keyboard.
 
   at_terminal.py STEP... -- COMMAND...
 
-Each STEP is done in its order: `wait TEXT` until the program has said TEXT, `keys TEXT` types it (\\n is Enter, \\x03 Ctrl-C),
-`raw` until the terminal neither waits for Enter nor shows what is typed, `hangup` takes the terminal away.
-Prints what the program said, then `The terminal was left as it was.` or how not, and ends with the program's exit code
+The STEPs are executed in order: `wait TEXT` waits until the program has printed TEXT, `keys TEXT` types it (\\n is Enter,
+\\x03 Ctrl-C), `raw` waits until the terminal neither waits for Enter nor echoes keys, `hangup` closes the terminal.
+Prints the output of the program, then whether the terminal has its old settings, and ends with the program's exit code
 (128 + N: signal N).
 """
 import fcntl
@@ -20,7 +20,7 @@ PATIENCE = 120  # s, for a busy machine; no pass criterion
 
 
 class Terminal:
-    """A program and the terminal in front of it."""
+    """A program and its terminal."""
 
     def __init__(self, command):
         self.keyboard, self.line = pty.openpty()
@@ -44,9 +44,9 @@ class Terminal:
         sys.exit(f"at_terminal.py: {why}")
 
     def listen(self):
-        """Takes what the program says; returns whether it still runs."""
+        """Reads the output of the program; returns whether it still runs."""
         if time.monotonic() > self.end:
-            self.fail("it took too long")
+            self.fail("the program did not end in time")
         while self.keyboard >= 0 and select.select([self.keyboard], [], [], 0.02)[0]:
             self.said += os.read(self.keyboard, 4096)
         if self.status is None:
@@ -61,7 +61,7 @@ class Terminal:
                 self.fail(f"never {what}")
 
     def wait(self, text):
-        self.until(lambda: self.said.find(text, self.seen) >= 0, f"said {text!r}")
+        self.until(lambda: self.said.find(text, self.seen) >= 0, f"printed {text!r}")
         self.seen = self.said.find(text, self.seen) + len(text)
 
     def modes(self):
@@ -86,11 +86,11 @@ def main():
         elif step == "keys":
             os.write(terminal.keyboard, text)
         elif step == "raw":
-            terminal.until(lambda: terminal.modes() == 0, "took keys without Enter")
+            terminal.until(lambda: terminal.modes() == 0, "read keys without Enter")
         elif step == "hangup":
             terminal.hang_up()
         else:
-            terminal.fail(f"no step is called {step}")
+            terminal.fail(f"unknown step {step}")
     while terminal.listen():
         if terminal.keyboard < 0:
             time.sleep(0.02)

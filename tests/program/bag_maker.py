@@ -1,6 +1,6 @@
-"""Makes a ROS 2 bag (SQLite) by Python's sqlite3 and struct alone, or prints what one holds.
+"""Makes a ROS 2 bag (SQLite) with only Python's sqlite3 and struct, or prints the contents of one.
    bag_maker.py make FILE.db3 [KIND]     KIND: circle (default), nan, back
-   bag_maker.py show FOLDER              a line per topic: name, type, messages, last three numbers of the first
+   bag_maker.py show FOLDER              a line per topic: name, type, number of messages, first three numbers of the last one
 """
 import glob
 import math

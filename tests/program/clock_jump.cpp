@@ -1,5 +1,5 @@
-// Is put before the C library (LD_PRELOAD) by faults_test.sh: the date jumps by a day and back
-// every few milliseconds, as if somebody set it, while the clock that nobody can set goes on.
+// Preloaded by faults_test.sh (LD_PRELOAD): the date jumps by a day and back every few
+// milliseconds, as if it were set. The monotonic clock continues.
 #include <dlfcn.h>
 #include <sys/time.h>
 

@@ -14,7 +14,7 @@ done
 expect 0 '^  study +[A-Z]' "$thimble" --help
 # Other runs may exist on this machine.
 expect 0 'thimble run|\(sim\)' "$thimble" view --list
-expect_words 2 'window' "$thimble" view nobody
+expect_words 2 'window' "$thimble" view no_such_run
 
 # Without a viewer in the build no window is started, with or without a screen.
 DISPLAY=:987 expect_words 0 'window' "$thimble" run "$scenes/box.yaml" --duration 0.2 \

@@ -1,10 +1,10 @@
-"""Checks that what another library links carries THIMBLE_EXPORT (thimble/driver/export.h), from the archives of a static build.
+"""Checks that declarations used by other libraries have THIMBLE_EXPORT (thimble/driver/export.h), in a static build.
 
     export_marks.py SOURCE_FOLDER BUILD_FOLDER
 
-Every function and class of a public header of the five libraries needs the mark if an archive defines something of it. A
-function or class of a header beside the sources needs it if another library or the program refers to it. Prints a line for
-each mark that is missing, then how many it looked at; the exit code is 1 if one is missing.
+A function or class of a public header of the five libraries needs the mark if an archive defines one of its symbols. A
+function or class of a private header needs it if another library or the program refers to it. Prints a line for each missing
+mark, then the number of checked declarations; the exit code is 1 if a mark is missing.
 """
 import collections
 import pathlib
@@ -35,8 +35,8 @@ def symbols(files, kinds, *options):
 
 
 def without_arguments(name):
-    """Returns "thimble::driver::SafetyGate::pass" of a demangled function, of what belongs to a class as a whole (its table) the
-    class's name followed by "::", and the arguments of templates in it, as a text."""
+    """Returns the name of a demangled function ("thimble::driver::SafetyGate::pass") or, for the tables of a class, the class name
+    followed by "::"; and the template arguments in it, as a text."""
     name = re.sub(r'\[abi:\w+\]', '', name)
     table = re.match(r'(?:vtable|typeinfo|typeinfo name|VTT) for (.*)', name)
     if table:
@@ -54,7 +54,7 @@ def without_arguments(name):
 
 
 class Headers:
-    """Declarations of headers: clang-format puts what is in a namespace at the beginning of a line."""
+    """Declarations of headers. With clang-format, declarations in a namespace begin at the start of a line."""
 
     def __init__(self):
         self.classes = {}                               # name: (marked, public, place)

@@ -52,7 +52,7 @@ printf 'OFF\n5 4 0\n1 1 1\n-1 1 1\n-1 -1 1\n1 -1 1\n0 0 0.6\n3 0 1 4\n3 1 2 4\n3
 for scene in my_ball my_bowl; do
   thimble run $scene.yaml >said 2>&1 || { echo "FAILED: the guide's scene $scene" >&2 && cat said >&2 && exit 1; }
 done
-grep -qE ' sheet .*4 triangles' said || { echo "FAILED: nothing is told of the sheet" >&2 && exit 1; }
+grep -qE ' sheet .*4 triangles' said || { echo "FAILED: the sheet is not reported" >&2 && exit 1; }
 
 # The page of all keys equals the list of the readers.
 bash "$source/app/guide/keys.sh" thimble | diff "$source/app/guide/pages/keys.md" - ||

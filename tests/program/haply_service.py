@@ -1,4 +1,4 @@
-"""A service that keeps to the published JSON of Haply's, with still arms: haply_service.py PORT_FILE [NAME...].
+"""A service with the published JSON of Haply's, with arms at rest: haply_service.py PORT_FILE [NAME...].
 
 Writes its port into PORT_FILE, serves until it is killed, and prints each force it is given."""
 import asyncio

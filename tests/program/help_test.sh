@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Each command has a help text.
+# Each command has a help text with an example, in lines below 80 characters.
 source "$(dirname "$0")/expect.sh" "$@"
 
 expect 0 '0 [a-z]+, 1 [a-z ]+, 2 [a-z ]+, 3 ' "$thimble" --help
@@ -11,6 +11,10 @@ for command in run exec view devices doctor calibrate feel-check identify twin h
 done
 for command in "${commands[@]}"; do
   expect 0 "$command" "$thimble" "$command" --help
+  if [[ $output != *"(not in this build)"* ]]; then
+    expect 0 . grep "^Example: thimble $command" <(printf '%s\n' "$output")
+    expect 1 '^0$' bash -c '"$0" "$1" --help | grep -cE "^.{80,}"' "$thimble" "$command"
+  fi
   expect 0 '^thimble [0-9]' "$thimble" "$command" --version
   expect 0 . grep "\`thimble $command\b" "$source_dir/app/guide/pages/commands.md"
 done

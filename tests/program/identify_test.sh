@@ -9,12 +9,12 @@ brief="identify --device sim --arm vintage_phantom --seconds 10 --places 0"
 endless="identify --device sim --arm vintage_phantom --seconds 600"
 
 # Any key, and Ctrl-C, ends it while the tip moves, and the terminal is restored.
-expect 130 '' $at_terminal wait ' ends it' raw keys x -- "$thimble" $endless --output never.yaml
-expect_own 130 '^The terminal was left as it was' $at_terminal wait ' ends it' raw keys ' ' -- "$thimble" $endless --output never.yaml
-expect 130 '' $at_terminal wait ' ends it' raw keys '\x03' -- "$thimble" $endless --output never.yaml
-expect_own 130 '^The terminal was left as it was' $at_terminal wait ' ends it' raw keys '\x03' -- "$thimble" $endless --output never.yaml
+expect 130 '' $at_terminal wait ' to stop' raw keys x -- "$thimble" $endless --output never.yaml
+expect_own 130 '^The terminal was left as it was' $at_terminal wait ' to stop' raw keys ' ' -- "$thimble" $endless --output never.yaml
+expect 130 '' $at_terminal wait ' to stop' raw keys '\x03' -- "$thimble" $endless --output never.yaml
+expect_own 130 '^The terminal was left as it was' $at_terminal wait ' to stop' raw keys '\x03' -- "$thimble" $endless --output never.yaml
 # A closed terminal ends it as well.
-expect 130 '' $at_terminal wait ' ends it' hangup -- "$thimble" $endless --output never.yaml
+expect 130 '' $at_terminal wait ' to stop' hangup -- "$thimble" $endless --output never.yaml
 expect 1 '' test -e never.yaml
 # Input from anything other than a terminal stops nothing.
 expect_words 0 'Ctrl-C' bash -c '(sleep 0.3; echo x) | "$@"' _ "$thimble" $brief --output piped.yaml

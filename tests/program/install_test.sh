@@ -140,6 +140,9 @@ while IFS=: read -r page link; do
 done < <(grep -oHP '\]\(\K[A-Za-z0-9_./-]+(?=(#[^)]*)?\))' "$documents"/*.md "$documents"/guide/*.md)
 [ "$links" -ge 70 ] || fail "only $links links of $documents were found"
 diff "$examples/../guide/pages/keys.md" "$documents/guide/keys.md" || fail "the guide has other keys"
+for kind in scene arm; do
+  "$program" help schema $kind | cmp - "$work/usr/share/thimble/schema/$kind.schema.json" || fail "no schema of $kind files"
+done
 
 # No path of the build folder: scans are searched for in the installation.
 mkdir -p home "$work/usr/share/thimble/meshes"

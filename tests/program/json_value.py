@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Checks a value of a JSON file; says what is there instead, and ends with 1, if it is not as expected.
+"""Checks a value of a JSON file. If it differs, prints the value and ends with 1.
 
    json_value.py FILE PATH OPERATOR VALUE
    json_value.py FILE PATH
 
-PATH: .key.key, with [3] for an element of a list, [name=text] for the element whose key has that text, and # at its end for the
-number of elements. OPERATOR: == != < <= > >= for numbers, texts, true, false and null; has, lacks: an element of a list is VALUE;
+PATH: .key.key, with [3] for an element of a list, [name=text] for the element whose key has this text, and # at the end for the
+number of elements. OPERATOR: == != < <= > >= for numbers, texts, true, false and null; has, lacks: whether a list contains VALUE;
 absent: there is no such value. Without an operator the value is printed."""
 import json
 import re
@@ -13,7 +13,7 @@ import sys
 
 
 def find(whole, path):
-    """The value at a path; raises LookupError."""
+    """Returns the value at a path; raises LookupError."""
     value = whole
     for key, index in re.findall(r"\.([A-Za-z0-9_-]+)|\[([^]]*)\]", path.rstrip("#")):
         if key:

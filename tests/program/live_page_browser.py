@@ -1,7 +1,7 @@
-"""Drives the page of a run that goes on in headless Chromium and says in JSON what it found.
+"""Operates the page of a live run in headless Chromium and prints its observations as JSON.
 
   live_page_browser.py CHROMIUM ADDRESS PICTURE STOP...      ADDRESS: as `thimble view --web` prints it; STOP: the
-      command that ends the run. Without it there is a picture alone, of an eighth of the size
+      command that ends the run. Without STOP only a picture is made, scaled to one eighth
 """
 import asyncio
 import json
@@ -14,7 +14,7 @@ from page_browser import DRAWN, Tab, in_chromium, try_to_get_out, what_went_out
 
 
 async def steer(tab):
-    """Turns a knob, pauses and begins anew, by what the page has for it; the run itself tells the page of it."""
+    """Turns a knob, pauses and restarts the run with the controls of the page; the run confirms each change to the page."""
     found = {}
     knob = "document.querySelector('#knobs input')"
     await tab.wait_for("thimblePage.state().live.knobs !== undefined")

@@ -47,6 +47,8 @@ thimble usr/share/man/man1/thimble.1.gz
 thimble usr/lib/udev/rules.d/70-thimble.rules
 thimble usr/share/bash-completion/completions/thimble
 thimble usr/share/thimble/scenes/box.yaml
+thimble usr/share/thimble/schema/scene.schema.json
+thimble usr/share/thimble/schema/arm.schema.json
 thimble usr/share/doc/thimble/README.md
 thimble usr/share/doc/thimble/guide/index.md
 thimble usr/share/doc/thimble/guide/keys.md

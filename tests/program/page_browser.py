@@ -1,9 +1,9 @@
-"""Drives a page in headless Chromium and says in JSON what it found: console errors, requests, what it shows.
+"""Operates a page in headless Chromium and prints its observations as JSON: console errors, requests, contents.
 
-  page_browser.py CHROMIUM PAGE PICTURE TIME...     PICTURE: where a screenshot goes, and beside it one of an eighth of its
-      size of the last time (PICTURE_small.png); TIME: s, at which the force is asked for
+  page_browser.py CHROMIUM PAGE PICTURE TIME...     PICTURE: file of the screenshot; PICTURE_small.png is one at the
+      last TIME, scaled to one eighth. TIME: s, times at which the force is read
 
-Over Chromium's remote debugging, on a port of its own choice on this computer.
+It uses the remote debugging of Chromium, on a free port of this computer.
 """
 import asyncio
 import base64
@@ -21,7 +21,7 @@ import websockets
 
 
 class Tab:
-    """A page in Chromium: commands go out with a number and come back with it, events in between are kept."""
+    """A page in Chromium. Answers are matched to commands by number; events in between are stored."""
 
     def __init__(self, socket):
         self.socket = socket
@@ -63,7 +63,7 @@ DRAWN = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame((
 
 
 def said(events):
-    """What the console was told as a warning or an error, and what was thrown."""
+    """Returns warnings and errors of the console, and uncaught exceptions."""
     words = []
     for event in events:
         parameters = event.get("params", {})
@@ -128,7 +128,7 @@ async def look(address, page, picture, times):
 
 
 async def try_to_get_out(tab):
-    """Does anything get out? Not even if the page's own scripts were to try: its policy says no before the network is asked."""
+    """Makes a script of the page request another address. The policy of the page must refuse it before any network access."""
     await tab.value("fetch('http://127.0.0.1:1/').catch(() => 0)")
     await tab.value(DRAWN)
 
@@ -147,7 +147,7 @@ def what_went_out(tab):
 
 
 def in_chromium(chromium, work):
-    """Starts Chromium without a screen and gives what `work` finds in its first tab, whose address that gets."""
+    """Starts Chromium without a screen and returns the result of `work`, which gets the address of the first tab."""
     with tempfile.TemporaryDirectory() as home:
         browser = subprocess.Popen(
             [chromium, "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",

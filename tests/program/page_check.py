@@ -1,6 +1,6 @@
-"""Holds what a browser found on a page (page_browser.py) against the recording of the run.
+"""Compares the observations on a page (page_browser.py) with the recording of the run.
 
-  page_check.py FOUND.json TICKS.csv TIME...     TICKS: by `thimble export`
+  page_check.py FOUND.json TICKS.csv TIME...     TICKS: from `thimble export`
 """
 import csv
 import json
@@ -28,17 +28,17 @@ def main():
         row = [row for row in ticks if int(row[place["time"]]) - begin <= time * 1e9 + 0.5][-1]
         force = math.hypot(*(float(row[place[f"f_sent_W.{axis}"]]) for axis in "xyz"))
         touched += force > 0.05
-        check(shown["tick"] == int(row[place["tick"]]), f"at {time} s tick {shown['tick']} and not {row[place['tick']]}")
-        check(abs(shown["force"] - force) < 1e-6, f"at {time} s {shown['force']} N and not {force} N")
-    check(touched > 0, "nothing was felt at any of these times: ask for others")
-    check(found["played"] and found["held"], "it does not play and pause")
+        check(shown["tick"] == int(row[place["tick"]]), f"{time} s: tick {shown['tick']}, expected {row[place['tick']]}")
+        check(abs(shown["force"] - force) < 1e-6, f"{time} s: {shown['force']} N, expected {force} N")
+    check(touched > 0, "no contact at any of these times: choose others")
+    check(found["played"] and found["held"], "play and pause do not work")
     check(abs(found["scrubbed"] - found["duration"] / 2) < 0.01 * found["duration"], f"scrubbed to {found['scrubbed']}")
     check(abs(found["window"][0] - found["duration"] / 4) < 1e-6, f"zoomed to {found['window']}")
     check(found["plotted"][0] > 100 and found["plotted"][1] == 0, f"plots with {found['plotted']} points")
     check("Force, most" in found["words"], "no figures")
-    check(found["leaks"] == "held", "a request would have left")
-    check(len(found["requests"]) == 1 and found["requests"][0].startswith("file:"), f"asked for {found['requests']}")
-    check(not found["said"], f"the console says {found['said']}")
+    check(found["leaks"] == "held", "a request could leave the page")
+    check(len(found["requests"]) == 1 and found["requests"][0].startswith("file:"), f"requested {found['requests']}")
+    check(not found["said"], f"console messages: {found['said']}")
     print("\n".join(wrong) if wrong else "as it should be")
     return 1 if wrong else 0
 

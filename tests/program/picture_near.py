@@ -1,22 +1,22 @@
-"""Says whether two small pictures show the same: PNG files as Chromium writes them, 8 bit, RGB or RGBA.
+"""Compares two small pictures: PNG files as Chromium writes them, 8 bit, RGB or RGBA.
 
   picture_near.py KEPT.png NEW.png
 
-Drawn in software the edges of triangles and of letters fall a little otherwise with another version; in pictures of an
-eighth of the size that is little. Something that is elsewhere, or missing, is much in some places.
+Software rendering differs slightly between versions at the edges of triangles and letters; in pictures scaled to one
+eighth this difference is small. A moved or missing object makes a large difference in some places.
 """
 import struct
 import sys
 import zlib
 
-MEAN_MOST = 2.5  # of 255, mean over all pixels; edges of another version: below 1
+MEAN_MAX = 2.5  # of 255, mean over all pixels; edges of another version: below 1
 OFF = 40  # of 255: a pixel that differs
-OFF_SHARE_MOST = 0.01  # of all pixels
+OFF_SHARE_MAX = 0.01  # of all pixels
 
 
 def pixels(path):
     data = open(path, "rb").read()
-    assert data[:8] == b"\x89PNG\r\n\x1a\n", path + " is no PNG"
+    assert data[:8] == b"\x89PNG\r\n\x1a\n", path + " is not a PNG"
     at, packed = 8, b""
     while at < len(data):
         length, kind = struct.unpack(">I4s", data[at:at + 8])
@@ -54,13 +54,13 @@ def pixels(path):
 def main():
     kept, new = (pixels(path) for path in sys.argv[1:])
     if [len(kept), len(kept[0])] != [len(new), len(new[0])]:
-        print("they have not the same size")
+        print("the sizes differ")
         return 1
     apart = [max(abs(a - b) for a, b in zip(one, other)) for row, others in zip(kept, new)
              for one, other in zip(row, others)]
     mean = sum(apart) / len(apart)
     off = sum(one > OFF for one in apart) / len(apart)
-    near = mean <= MEAN_MOST and off <= OFF_SHARE_MOST
+    near = mean <= MEAN_MAX and off <= OFF_SHARE_MAX
     print(f"{'the same' if near else 'another picture'}: {mean:.2f} of 255 apart on the whole, {100 * off:.2f} % of it off")
     return 0 if near else 1
 

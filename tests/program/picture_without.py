@@ -1,8 +1,8 @@
-"""Writes a picture without one part of it, to see that picture_near.py tells them apart.
+"""Writes a picture with one part removed, to test that picture_near.py detects the difference.
 
   picture_without.py PICTURE.png LEFT TOP WIDTH HEIGHT OUT.png
 
-The part gets the colour of its upper left corner. PNG files as picture_near.py reads them.
+The part gets the colour of its upper left corner. The formats are those of picture_near.py.
 """
 import struct
 import sys

@@ -1,8 +1,8 @@
-"""Writes a picture in a part of its size, for picture_near.py: each pixel the mean of a square of the larger one.
+"""Scales a picture down for picture_near.py: each pixel is the mean of a square of the larger picture.
 
   shrink_picture.py LARGE.png SMALL.png TIMES [LEFT TOP WIDTH HEIGHT]
 
-TIMES: how many times smaller, a whole number; then the part of the larger one that is taken, pixels, all if absent
+TIMES: scale factor, a whole number. LEFT TOP WIDTH HEIGHT: part of the larger picture, pixels (default: all)
 """
 import struct
 import sys

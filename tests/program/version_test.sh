@@ -16,7 +16,7 @@ if [ -d "$python/thimble" ] && /usr/bin/python3 -c 'import numpy' 2>/dev/null; t
   export PYTHONPATH=$python PYTHONDONTWRITEBYTECODE=1
   expect 0 "^$dots\$" /usr/bin/python3 -c 'import thimble; print(thimble.__version__)'
 else
-  echo "NOT TESTED: the version that Python tells; the package was not built, or numpy is missing."
+  echo "NOT TESTED: the version of the Python package; the package was not built, or numpy is missing."
 fi
 if command -v dpkg-deb >/dev/null; then
   expect 0 "CPACK_PACKAGE_VERSION \"$dots\"" cat "$(dirname "$thimble")/../CPackConfig.cmake"

@@ -94,19 +94,19 @@ expect_words 0 'screen view' "$thimble" run "$scenes/honey.yaml" --view --durati
 sed "s#\.\./arms#$source_dir/app/arms#; s/^duration:.*/duration: 60/" "$scenes/rubber.yaml" >ball.yaml
 "$thimble" run ball.yaml --clock paced --speed 2 --reload --loop --name "$me" >steered.log 2>&1 &
 run=$!
-# told PATTERN: waits until the run's line matches.
-told() {
+# reports PATTERN: waits until the run's line matches.
+reports() {
   for _ in $(seq 100); do
-    timeout 60 "$thimble" view "$me" --text --for 0.1 >told.txt 2>&1
-    grep -qE "$1" told.txt && break
+    timeout 60 "$thimble" view "$me" --text --for 0.1 >reported.txt 2>&1
+    grep -qE "$1" reported.txt && break
     sleep 0.1
   done
-  expect 0 "$1" cat told.txt
+  expect 0 "$1" cat reported.txt
 }
-told "$me running"
+reports "$me running"
 expect_error 2 'pause' "$thimble" view "$me" --step 1
 expect 0 '' "$thimble" view "$me" --pause --step 10
-told "$me paused"
+reports "$me paused"
 "$thimble" view "$me" --text --for 0.1 >before.txt
 expect 0 '' "$thimble" view "$me" --step 100
 sleep 0.5
@@ -117,11 +117,11 @@ expect 0 ' 0 missed' cat after.txt
 expect 0 '' "$thimble" view "$me" --speed 4 --loop off
 expect_words 2 '--speed "5"' "$thimble" view "$me" --speed 5
 expect 0 '' "$thimble" view "$me" --restart
-told "$me running"
+reports "$me running"
 expect 0 '' "$thimble" view "$me" --turn 'ball: stiffness=250' --save-knobs
 expect 0 'stiffness: 250 ' cat ball-turned.yaml
 sed -i 's/stiffness: 400/stiffness: soft/' ball.yaml
-told 'ball.yaml:15: stiffness'
+reports 'ball.yaml:15: stiffness'
 cp ball-turned.yaml ball.yaml
 for _ in $(seq 100); do "$thimble" view --list | grep -q 'ball: stiffness = 250' && break; sleep 0.1; done
 expect 0 'ball: stiffness = 250' "$thimble" view --list
@@ -163,12 +163,12 @@ for i in $(seq "$([ -n "${THIMBLE_LONG:-}" ] && echo 50 || echo 3)"); do
     sleep "0.$((RANDOM % 900 + 100))"
     kill -9 $run
     wait $run 2>/dev/null
-    timeout 60 "$thimble" view "$me" --text >told.txt 2>&1
+    timeout 60 "$thimble" view "$me" --text >reported.txt 2>&1
     status=$?
     [ -e "$segment" ] && break
   done
-  expect 0 'process has died' sh -c "cat told.txt; exit $status"
-  stored=$(grep -oE '[0-9]+ ticks' told.txt | head -1 | grep -oE '[0-9]+')
+  expect 0 'process has died' sh -c "cat reported.txt; exit $status"
+  stored=$(grep -oE '[0-9]+ ticks' reported.txt | head -1 | grep -oE '[0-9]+')
   expect 0 'killed.csv: .* cut' "$thimble" export killed.h5 --csv killed.csv
   rows=$(($(wc -l <killed.csv) - 1))
   lost=$((stored - rows))

@@ -18,12 +18,12 @@ def source() -> Path:
 
 
 @pytest.fixture
-def told(program, tmp_path):
+def run_program(program, tmp_path):
     """Runs the program in a separate folder, and returns its output."""
 
-    def tell(*arguments: str) -> str:
+    def run_in_folder(*arguments: str) -> str:
         return subprocess.run(
             [program, *arguments], cwd=tmp_path, check=True, capture_output=True, text=True
         ).stdout
 
-    return tell
+    return run_in_folder

@@ -17,8 +17,8 @@ def test_all_combinations_come_equally_often_in_every_order():
     factors = {"amplitude": [1e-5, 2e-5], "speed": [0.02, 0.05, 0.1]}
     for order in ("given", "random", "blocks", "balanced"):
         trials = experiment.Trials(factors, repeats=4, order=order, seed=3, subject=0)
-        told = [(one["amplitude"], one["speed"]) for one in trials.conditions]
-        assert len(told) == 24 and all(told.count(one) == 4 for one in itertools.product(*factors.values()))
+        shown = [(one["amplitude"], one["speed"]) for one in trials.conditions]
+        assert len(shown) == 24 and all(shown.count(one) == 4 for one in itertools.product(*factors.values()))
         again = experiment.Trials(factors, repeats=4, order=order, seed=3, subject=0)
         assert again.conditions == trials.conditions
         other = experiment.Trials(factors, repeats=4, order=order, seed=4, subject=0).conditions
@@ -131,12 +131,12 @@ def test_fit_recovers_parameters_with_correct_standard_errors(shape, guess):
 
 @pytest.mark.parametrize("shape", ["logistic", "probit"])
 def test_fit_is_the_likeliest_curve_near_it(shape):
-    levels, said, of = [1, 2, 3, 4, 5], [1, 4, 11, 17, 19], [20, 20, 20, 20, 20]
-    found = experiment.fit(levels, said, of, shape=shape)
+    levels, message, of = [1, 2, 3, 4, 5], [1, 4, 11, 17, 19], [20, 20, 20, 20, 20]
+    found = experiment.fit(levels, message, of, shape=shape)
 
     def likelihood(middle, width):
         p = experiment.Psychometric(shape, middle, width, 0, 0, 0, 0, 0)(levels)
-        return float(np.sum(np.array(said) * np.log(p) + (20 - np.array(said)) * np.log(1 - p)))
+        return float(np.sum(np.array(message) * np.log(p) + (20 - np.array(message)) * np.log(1 - p)))
 
     best = likelihood(found.middle, found.width)
     for middle, width in itertools.product((0.98, 1, 1.02), (0.95, 1, 1.05)):
@@ -145,11 +145,11 @@ def test_fit_is_the_likeliest_curve_near_it(shape):
 
 
 def test_fit_is_invariant_to_grouping_and_unit():
-    levels, said = [1, 2, 3, 4, 5], [1, 4, 11, 17, 19]
-    counted = experiment.fit(levels, said, 20)
-    single = experiment.fit(np.repeat(levels, 20), np.concatenate([np.arange(20) < one for one in said]))
+    levels, message = [1, 2, 3, 4, 5], [1, 4, 11, 17, 19]
+    counted = experiment.fit(levels, message, 20)
+    single = experiment.fit(np.repeat(levels, 20), np.concatenate([np.arange(20) < one for one in message]))
     assert single == counted
-    small = experiment.fit(np.array(levels) * 1e-6 + 7e-6, said, 20)
+    small = experiment.fit(np.array(levels) * 1e-6 + 7e-6, message, 20)
     assert small.middle == pytest.approx(counted.middle * 1e-6 + 7e-6) and small.width == pytest.approx(counted.width * 1e-6)
 
 
@@ -168,11 +168,11 @@ def test_lapses_are_found_and_do_not_widen_the_curve():
     levels = np.linspace(4, 16, 9)
     widths, lapses = {"fit": [], 0.0: []}, []
     for seed in range(30):
-        said = np.random.default_rng(seed).binomial(200, logistic(levels, 10, 0.8, 0.5, 0.04))
+        message = np.random.default_rng(seed).binomial(200, logistic(levels, 10, 0.8, 0.5, 0.04))
         for lapse in widths:
-            found = experiment.fit(levels, said, 200, guess=0.5, lapse=lapse)
+            found = experiment.fit(levels, message, 200, guess=0.5, lapse=lapse)
             widths[lapse].append(found.width)
-        lapses.append(experiment.fit(levels, said, 200, guess=0.5, lapse="fit").lapse)
+        lapses.append(experiment.fit(levels, message, 200, guess=0.5, lapse="fit").lapse)
     assert np.mean(lapses) == pytest.approx(0.04, abs=0.01)
     assert np.mean(widths["fit"]) == pytest.approx(0.8, rel=0.1)
     assert np.mean(widths[0.0]) > 1.15 * np.mean(widths["fit"])
@@ -185,9 +185,9 @@ def test_fit_warns_without_a_width_and_refuses_flat_answers():
     with pytest.warns(RuntimeWarning, match="do not determine the width"):  # the attribute exists without a value
         found = experiment.fit([1, 2, 3, 4], [5, 6, 10, 10], 10, guess=0.5)
     assert math.isnan(found.middle_error) and math.isnan(found.width_error)
-    for said in ([5, 5, 5], [9, 5, 1], [10, 10, 10], [0, 0, 0]):
+    for message in ([5, 5, 5], [9, 5, 1], [10, 10, 10], [0, 0, 0]):
         with pytest.raises(thimble.ArgumentError, match="do not rise"):
-            experiment.fit([1, 2, 3], said, 10)
+            experiment.fit([1, 2, 3], message, 10)
 
 
 def test_constant_stimuli_are_balanced_over_subjects():
@@ -230,7 +230,7 @@ def test_fit_is_at_least_as_likely_as_a_dense_grid(guess):
 
 
 def test_constant_stimuli_fit_their_answers():
-    stimuli = experiment.ConstantStimuli(np.linspace(0.7, 1.3, 7), 40, says="rougher", seed=5)
+    stimuli = experiment.ConstantStimuli(np.linspace(0.7, 1.3, 7), 40, answer_key="rougher", seed=5)
     random = np.random.default_rng(2)
     while (condition := stimuli.condition()) is not None:
         stimuli.take({"rougher": bool(random.random() < logistic(condition["level"], 1.0, 0.06, guess=0))})
@@ -261,6 +261,6 @@ def test_constant_stimuli_fit_their_answers():
         (lambda: experiment.fit([1, 2], [0, 1], guess=0.5, lapse=0.6), "lapse"),
     ],
 )
-def test_wrong_arguments_raise_a_clear_error(wrong, said):
-    with pytest.raises(thimble.ArgumentError, match=said):
+def test_wrong_arguments_raise_a_clear_error(wrong, message):
+    with pytest.raises(thimble.ArgumentError, match=message):
         wrong()

@@ -32,21 +32,21 @@ def into(k, z=-0.02):
     return np.array([0.002 * np.sin(k), 0.0, z])
 
 
-def told(env, seed, steps=40):
+def results(env, seed, steps=40):
     """Returns all results of an environment over several episodes."""
     observation, info = env.reset(seed=seed)
-    told = [observation.tobytes(), info]
+    results = [observation.tobytes(), info]
     over = False
     for k in range(steps):
         if over:
             observation, info = env.reset()
-            told += [observation.tobytes(), 0.0, False, False, info]
+            results += [observation.tobytes(), 0.0, False, False, info]
             over = False
             continue
         observation, *rest = env.step(into(k))
-        told += [observation.tobytes(), *rest]
+        results += [observation.tobytes(), *rest]
         over = rest[1] or rest[2]
-    return told
+    return results
 
 
 def test_interface():
@@ -99,10 +99,10 @@ def test_environment_equals_a_stepper_with_the_same_targets():
 
 
 def test_same_seed_repeats_all_episodes_bit_identically():
-    assert told(SHORT(), 3) == told(SHORT(), 3)
-    assert told(SHORT(), 3) != told(SHORT(), 4)
+    assert results(SHORT(), 3) == results(SHORT(), 3)
+    assert results(SHORT(), 3) != results(SHORT(), 4)
     env = SHORT()
-    assert told(env, 3) == told(env, 3)
+    assert results(env, 3) == results(env, 3)
 
 
 def test_episodes_end_by_time_and_by_the_goal():
@@ -143,25 +143,25 @@ def test_unreachable_target_keeps_the_hand_and_clears_reached():
         (lambda: thimble.gym.VectorEnv(SHORT, 2, workers=0), "workers"),
     ],
 )
-def test_wrong_arguments_raise_a_clear_error(wrong, said):
-    with pytest.raises(thimble.Error, match=said):
+def test_wrong_arguments_raise_a_clear_error(wrong, message):
+    with pytest.raises(thimble.Error, match=message):
         wrong()
 
 
 @pytest.mark.parametrize("start, workers", [("spawn", 2), ("forkserver", 3)])
 def test_vector_env_is_bit_identical_to_single_environments(start, workers):
     count, steps = 5, 40
-    alone = [told(SHORT(), 20 + i, steps) for i in range(count)]
+    alone = [results(SHORT(), 20 + i, steps) for i in range(count)]
     with_ends = sum(True in one for one in alone)
     with thimble.gym.VectorEnv(SHORT, count, workers=workers, start=start) as envs:
         assert envs.action_space.shape == (count, 3) and envs.observation_space.shape == (count, 11)
         observations, infos = envs.reset(seed=20)
-        beside = [[observations[i].tobytes(), of(infos, i)] for i in range(count)]
+        together = [[observations[i].tobytes(), of(infos, i)] for i in range(count)]
         for k in range(steps):
             observations, *rest, infos = envs.step(np.tile(into(k), (count, 1)))
             for i in range(count):
-                beside[i] += [observations[i].tobytes(), *(one[i] for one in rest), of(infos, i)]
-        assert with_ends == count and beside == alone
+                together[i] += [observations[i].tobytes(), *(one[i] for one in rest), of(infos, i)]
+        assert with_ends == count and together == alone
 
 
 def of(infos, i):

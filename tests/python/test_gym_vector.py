@@ -40,31 +40,31 @@ def of(infos, i):
     return {key: infos[key][i] for key in infos if not key.startswith("_") and infos["_" + key][i]}
 
 
-def told_alone(env, number, seed, steps):
+def results_of_single(env, number, seed, steps):
     """Returns all results of one environment over several episodes."""
     observation, info = env.reset(seed=seed)
-    told, over = [observation.tobytes(), info], False
+    results, over = [observation.tobytes(), info], False
     for k in range(steps):
         if over:
             observation, info = env.reset()
-            told += [observation.tobytes(), 0.0, False, False, info]
+            results += [observation.tobytes(), 0.0, False, False, info]
             over = False
         else:
             observation, *rest = env.step(into(k, number))
-            told += [observation.tobytes(), *rest]
+            results += [observation.tobytes(), *rest]
             over = rest[1] or rest[2]
-    return told
+    return results
 
 
-def told_together(envs, seed, steps):
+def results_of_vector(envs, seed, steps):
     """Returns the same results of each arm of a vector environment."""
     observations, infos = envs.reset(seed=seed)
-    told = [[observations[i].tobytes(), of(infos, i)] for i in range(COUNT)]
+    results = [[observations[i].tobytes(), of(infos, i)] for i in range(COUNT)]
     for k in range(steps):
         observations, *rest, infos = envs.step(np.array([into(k, i) for i in range(COUNT)]))
         for i in range(COUNT):
-            told[i] += [observations[i].tobytes(), *(one[i] for one in rest), of(infos, i)]
-    return told
+            results[i] += [observations[i].tobytes(), *(one[i] for one in rest), of(infos, i)]
+    return results
 
 
 @pytest.mark.parametrize("scene", ["rubber", "clay"])
@@ -72,14 +72,14 @@ def test_each_arm_is_bit_identical_to_a_single_environment(scene):
     steps = 45
     common = {"seconds": 0.305, "frame_skip": 10}
     alone = [
-        told_alone(thimble.gym.TouchEnv(scene, lightly, terminated=deep, **common), i, 20 + i, steps)
+        results_of_single(thimble.gym.TouchEnv(scene, lightly, terminated=deep, **common), i, 20 + i, steps)
         for i in range(COUNT)
     ]
     envs = thimble.gym.TouchVectorEnv(scene, COUNT, lightly_all, terminated=deep_all, **common)
-    together = told_together(envs, 20, steps)
+    together = results_of_vector(envs, 20, steps)
     assert together == alone
     assert any(True in one[4::5] for one in alone) and any(True in one[5::5] for one in alone)  # both kinds of ends
-    assert told_together(envs, 20, steps) == alone  # and again
+    assert results_of_vector(envs, 20, steps) == alone  # and again
 
 
 def test_results_equal_those_of_vector_env():
@@ -90,8 +90,8 @@ def test_results_equal_those_of_vector_env():
             mine, theirs = getattr(envs, space), getattr(others, space)
             assert mine.shape == theirs.shape and (mine.low == theirs.low).all() and (mine.high == theirs.high).all()
         assert envs.metadata == others.metadata and envs.num_envs == others.num_envs
-        told = [(one.reset(seed=[1, 2, 3, 4, 5]), *[one.step(np.zeros((COUNT, 3))) for _ in range(12)]) for one in (envs, others)]
-    for mine, theirs in zip(*told):
+        results = [(one.reset(seed=[1, 2, 3, 4, 5]), *[one.step(np.zeros((COUNT, 3))) for _ in range(12)]) for one in (envs, others)]
+    for mine, theirs in zip(*results):
         for a, b in zip(mine[:-1], theirs[:-1]):
             assert a.dtype == b.dtype and a.tobytes() == b.tobytes()
         assert set(mine[-1]) == set(theirs[-1])
@@ -120,7 +120,7 @@ def test_step_that_begins_an_episode_ignores_action_and_reward():
 
 def test_wrong_arguments_raise_a_clear_error():
     make = functools.partial(thimble.gym.TouchVectorEnv, "rubber", 2)
-    for wrong, said in (
+    for wrong, message in (
         (lambda: thimble.gym.TouchVectorEnv("no_such", 2), "Known by name"),
         (lambda: thimble.gym.TouchVectorEnv("rubber", 0), "count"),
         (lambda: thimble.gym.TouchVectorEnv("two_hands", 2), "arms"),
@@ -129,14 +129,14 @@ def test_wrong_arguments_raise_a_clear_error():
         (lambda: make().step(np.zeros((2, 3))), r"reset\(\)"),
         (lambda: make().reset(seed=[1]), "2 seeds"),
     ):
-        with pytest.raises(thimble.Error, match=said):
+        with pytest.raises(thimble.Error, match=message):
             wrong()
     with pytest.raises(TypeError, match="Meshes"):
         make(meshes=3)
     envs = make(lambda ticks, actions: 1.0)
     envs.reset(seed=0)
-    for actions, said in ((np.zeros(3), "shape"), (np.full((2, 3), np.inf), "three numbers"), (np.zeros((2, 3)), "reward")):
-        with pytest.raises(thimble.ArgumentError, match=said):
+    for actions, message in ((np.zeros(3), "shape"), (np.full((2, 3), np.inf), "three numbers"), (np.zeros((2, 3)), "reward")):
+        with pytest.raises(thimble.ArgumentError, match=message):
             envs.step(actions)
     envs.close()
     envs.close()

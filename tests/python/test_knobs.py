@@ -22,7 +22,7 @@ def test_knobs_are_listed_with_unit_bounds_and_value():
     assert "ball: stiffness" in knobs and len(knobs) == len(list(knobs)) == len(knobs.keys()) > 1
     stiffness = knobs["ball: stiffness"]
     assert isinstance(stiffness, thimble.Knob) and stiffness.unit == "N/m"
-    assert stiffness.least < stiffness.value < stiffness.most
+    assert stiffness.min < stiffness.value < stiffness.max
     assert knobs.ball_stiffness == stiffness == dict(knobs.items())["ball: stiffness"]
     assert "ball_stiffness" in dir(knobs)
     assert f"{stiffness.value:g} N/m" in repr(knobs)
@@ -70,17 +70,17 @@ def test_custom_law_gets_the_force_with_changed_knobs():
 def test_wrong_knob_raises_and_changes_nothing():
     stepper = thimble.Stepper("rubber")
     knobs, before = stepper.knobs, stepper.knobs.values()
-    most = f"{knobs.ball_stiffness.most:g}"
-    for wrong, error, said in [
+    maximum = f"{knobs.ball_stiffness.max:g}"
+    for wrong, error, message in [
         (lambda: knobs.__setitem__("ball: stifness", 3), thimble.ArgumentError, "no knob 'ball: stifness'.*ball: stiffness"),
         (lambda: knobs["nothing"], thimble.ArgumentError, "it has ball: stiffness"),
-        (lambda: knobs.__setitem__("ball: stiffness", 1e9), ValueError, rf"must be 0 to {most} N/m, found 1e\+09; the knob is unchanged"),
+        (lambda: knobs.__setitem__("ball: stiffness", 1e9), ValueError, rf"must be 0 to {maximum} N/m, found 1e\+09; the knob is unchanged"),
         (lambda: knobs.__setitem__("ball: stiffness", float("nan")), thimble.ArgumentError, "found nan"),
         (lambda: knobs.__setitem__("ball: stiffness", "soft"), TypeError, "expected a number, found 'soft'"),
         (lambda: setattr(knobs, "stifness", 3), AttributeError, "it has ball_stiffness"),
         (lambda: knobs.stifness, AttributeError, "no knob 'stifness'"),
     ]:
-        with pytest.raises(error, match=said):
+        with pytest.raises(error, match=message):
             wrong()
     stepper.step()
     assert knobs.values() == before and not hasattr(knobs, "stifness")

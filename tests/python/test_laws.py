@@ -23,7 +23,7 @@ def _unset(time, tip, velocity, wanted, force, data):
 
 
 @thimble.LawFunction
-def _told(time, tip, velocity, wanted, force, data):
+def _time_tip_data(time, tip, velocity, wanted, force, data):
     """Sets the force from time, tip and data."""
     force[0], force[1], force[2] = time, tip[2], ctypes.cast(data, ctypes.POINTER(ctypes.c_double))[1]
 
@@ -38,7 +38,7 @@ def test_compiled_law_is_bit_identical_to_a_python_law():
 
 def test_compiled_law_gets_time_tip_and_changing_data():
     data = np.array([0.0, 0.25])
-    stepper = thimble.Stepper("box", seconds=0.1, law=thimble.compiled_law(_told, data))
+    stepper = thimble.Stepper("box", seconds=0.1, law=thimble.compiled_law(_time_tip_data, data))
     for _ in range(50):
         stepper.step()
     data[1] = -0.5
@@ -101,7 +101,7 @@ def test_numba_law_that_raises_gives_zero_force():
 
 
 def test_wrong_laws_are_refused_before_the_run():
-    for wrong, error, said in [
+    for wrong, error, message in [
         (lambda: thimble.compiled_law(0), thimble.ArgumentError, "not the address of a function"),
         (lambda: thimble.compiled_law(-4), thimble.ArgumentError, "not the address of a function"),
         (lambda: thimble.compiled_law("law"), TypeError, "a function or its address"),
@@ -110,7 +110,7 @@ def test_wrong_laws_are_refused_before_the_run():
         (lambda: thimble.run("box", law=3), TypeError, "law: expected a function of a tick"),
         (lambda: thimble.run("two_hands", law=_half), thimble.Error, "supports one arm"),
     ]:
-        with pytest.raises(error, match=said):
+        with pytest.raises(error, match=message):
             wrong()
 
 
@@ -157,7 +157,7 @@ def test_fault_of_one_arm_leaves_the_others():
 def test_wrong_shapes_are_refused_and_step_no_arm():
     arms = thimble.Simulators(2)
     begin = arms.step().time[0]
-    for wrong, said in [
+    for wrong, message in [
         (lambda: arms.step(np.zeros((3, 3))), r"force: expected the shape \(2, 3\)"),
         (lambda: arms.step(hand=(0, 0, np.nan)), "hand: expected"),
         (lambda: arms.step("hard"), "force: expected"),
@@ -165,6 +165,6 @@ def test_wrong_shapes_are_refused_and_step_no_arm():
         (lambda: thimble.Simulators(2, seed=[1, 2, 3]), "seed: expected 2 seeds, found 3"),
         (lambda: thimble.Simulators(2, "box"), "no arm file of that name"),
     ]:
-        with pytest.raises(thimble.ArgumentError, match=said):
+        with pytest.raises(thimble.ArgumentError, match=message):
             wrong()
     assert arms.step().time[0] == pytest.approx(begin + 1e-3)

@@ -71,13 +71,13 @@ def test_shot_repeats_the_run_or_gives_the_reason(tmp_path):
         own.shot()
     with pytest.raises(thimble.Error, match="its quality was draft"):
         thimble.run("box", seconds=0.1, quality="draft").shot()
-    for wrong, said in [
+    for wrong, message in [
         ({"size": (10, 10)}, "size: expected a whole number from 64 to 8192"),
         ({"size": 5}, "size: expected 2 numbers"),
         ({"camera": (1,)}, "camera: expected 2 or 3 numbers"),
         ({"at": 1e4}, "ends at"),
     ]:
-        with pytest.raises(thimble.ArgumentError, match=said):
+        with pytest.raises(thimble.ArgumentError, match=message):
             thimble.shot("box", **wrong)
     with pytest.raises(thimble.ArgumentError, match="Known by name"):
         thimble.shot("no_such_scene")

@@ -43,8 +43,8 @@ def test_knows_scenes_and_arms_by_name(source):
         (lambda: thimble.study("box", no_such_option=3), "study box: .*--no-such-option"),
     ],
 )
-def test_wrong_arguments_raise_a_clear_error(wrong, said):
-    with pytest.raises(thimble.Error, match=said):
+def test_wrong_arguments_raise_a_clear_error(wrong, message):
+    with pytest.raises(thimble.Error, match=message):
         wrong()
 
 
@@ -92,8 +92,8 @@ def test_wrong_types_are_refused_before_the_run():
         (lambda: thimble.study("nope"), "there are cost"),
     ],
 )
-def test_unknown_names_and_values_out_of_bounds_are_refused(wrong, said):
-    with pytest.raises(thimble.ArgumentError, match=said) as caught:
+def test_unknown_names_and_values_out_of_bounds_are_refused(wrong, message):
+    with pytest.raises(thimble.ArgumentError, match=message) as caught:
         wrong()
     assert isinstance(caught.value, thimble.Error) and isinstance(caught.value, ValueError)
 
@@ -117,8 +117,8 @@ def test_unknown_names_and_values_out_of_bounds_are_refused(wrong, said):
         (lambda: thimble.study("box", 3), "arguments: expected a file"),
     ],
 )
-def test_wrong_types_are_type_errors_with_the_expected_type(wrong, said):
-    with pytest.raises(TypeError, match=said):
+def test_wrong_types_are_type_errors_with_the_expected_type(wrong, message):
+    with pytest.raises(TypeError, match=message):
         wrong()
 
 

@@ -12,8 +12,8 @@ SCENES = ["elephant", "tin_can", "rubber", "charges"]
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_run_is_bit_identical_to_the_program(scene, told, tmp_path):
-    told("run", scene, "--duration", "1.5", "--record", "program.h5")
+def test_run_is_bit_identical_to_the_program(scene, run_program, tmp_path):
+    run_program("run", scene, "--duration", "1.5", "--record", "program.h5")
     program = thimble.read_recording(tmp_path / "program.h5")
     python = thimble.run(scene, seconds=1.5)
     assert len(python) == 1500
@@ -72,9 +72,9 @@ def test_orientation_is_there_if_the_arm_measures_it():
     assert not thimble.run("rubber", seconds=0.1).orientation.any()
 
 
-def test_summary_and_figures_equal_those_of_the_program(told, tmp_path):
+def test_summary_and_figures_equal_those_of_the_program(run_program, tmp_path):
     run = thimble.run("rubber", seconds=1)
-    assert run.summary() in told("run", "rubber", "--duration", "1")
+    assert run.summary() in run_program("run", "rubber", "--duration", "1")
     figures = {figure.name: figure for figure in run.figures()}
     assert figures["lost_contacts"].met and figures["ticks"].value == 1000
     assert figures["force_max"].value == pytest.approx(np.linalg.norm(run.force, axis=1).max())

@@ -80,10 +80,10 @@ def test_recordings_of_dicts_and_texts_can_be_replayed(tmp_path, program):
     thimble.run(BALL, set={"ball.stiffness": 450}, record=tmp_path / "ball.h5")
     recording = thimble.read_recording(tmp_path / "ball.h5")
     assert "450" in recording.info["scene_text"]
-    said = subprocess.run(
+    message = subprocess.run(
         [program, "replay", "ball.h5", "--verify"], cwd=tmp_path, capture_output=True, text=True, check=False
     )
-    assert said.returncode == 0, said.stderr
+    assert message.returncode == 0, message.stderr
 
 
 @pytest.mark.parametrize(
@@ -97,12 +97,12 @@ def test_recordings_of_dicts_and_texts_can_be_replayed(tmp_path, program):
         (lambda: thimble.run({**BALL, "arm": "eagle"}), "the name of an arm: .*falcon"),
         (lambda: thimble.run({}), "missing"),
         (lambda: thimble.run("name: [\n"), "the scene's text:2"),
-        (lambda: thimble.run("nobody", set={"rate": 500}), "Known by name"),
-        (lambda: thimble.run("./nobody.yaml", set={"rate": 500}), "nobody.yaml: cannot be read"),
+        (lambda: thimble.run("missing", set={"rate": 500}), "Known by name"),
+        (lambda: thimble.run("./missing.yaml", set={"rate": 500}), "missing.yaml: cannot be read"),
     ],
 )
-def test_mistakes_in_scenes_are_reported(wrong, said):
-    with pytest.raises(thimble.Error, match=said):
+def test_mistakes_in_scenes_are_reported(wrong, message):
+    with pytest.raises(thimble.Error, match=message):
         wrong()
 
 
@@ -111,12 +111,12 @@ def test_files_of_unrecorded_scenes_are_removed(tmp_path):
     import sys
 
     script = f"import thimble; print(thimble.run({TEXT!r}, seconds=0.01).info['scene_file'])"
-    told = subprocess.run(
+    done = subprocess.run(
         [sys.executable, "-c", script],
         env={**os.environ, "TMPDIR": str(tmp_path), "XDG_STATE_HOME": str(tmp_path / "state")},
         capture_output=True, text=True, check=True,
     )
-    assert told.stdout.startswith(str(tmp_path / "thimble-"))
+    assert done.stdout.startswith(str(tmp_path / "thimble-"))
     assert not list(tmp_path.glob("thimble-*")) and not (tmp_path / "state/thimble/scenes").exists()
 
 

@@ -121,12 +121,12 @@ def test_log_of_another_experiment_is_not_changed(tmp_path):
     path = tmp_path / "a.jsonl"
     whole(path)
     text = path.read_bytes()
-    for other, said in (
+    for other, message in (
         (lambda: experiment.Session(path, staircases(), seed=8, about={"subject": 7}), "different seed"),
         (lambda: experiment.Session(path, staircases(), seed=7, about={"subject": 8}), "different about"),
         (lambda: experiment.Session(path, staircases(9.0), seed=7, about={"subject": 7}), "different plan"),
     ):
-        with pytest.raises(thimble.Error, match=said):
+        with pytest.raises(thimble.Error, match=message):
             other()
     damaged = text.replace(b'"trial": 3', b'"trial" 3')
     path.write_bytes(damaged)
@@ -156,8 +156,8 @@ def test_refused_answer_is_not_logged(tmp_path):
     path = tmp_path / "a.jsonl"
     with experiment.Session(path, staircases(), seed=7) as session:
         begun = path.read_bytes()
-        for answer, said in (({"right": True}, "correct=True"), ({"correct": True, "x": object()}, "cannot hold")):
-            with pytest.raises(thimble.ArgumentError, match=said):
+        for answer, message in (({"right": True}, "correct=True"), ({"correct": True, "x": object()}, "cannot hold")):
+            with pytest.raises(thimble.ArgumentError, match=message):
                 session.answer(answer)
         with pytest.raises(thimble.ArgumentError, match="cannot hold"):
             session.answer({"correct": True, "x": float("nan")})
@@ -207,10 +207,10 @@ def test_example_finds_the_parameters_of_its_subject(source, tmp_path):
         while left.poll() is None and not (log.exists() and log.read_bytes().count(b"\n") > 5):
             time.sleep(0.005)
         left.kill()
-    said = subprocess.run(example, check=True, capture_output=True, text=True).stdout
-    assert re.search(r"Goes on after [1-9]", said)
+    message = subprocess.run(example, check=True, capture_output=True, text=True).stdout
+    assert re.search(r"Continues after [1-9]", message)
     # Noise of 0.1 and strokes with a scatter of 0.2: sqrt(2) * 0.22 * 0.674 is 21 %.
-    threshold = float(re.search(r"told in 79 % at ([0-9.]+)", said)[1])
-    equal, jnd = (float(one) for one in re.search(r"equal at ([0-9.]+) .*JND ([0-9.]+) %", said).groups())
+    threshold = float(re.search(r"identified in 79 % at ([0-9.]+)", message)[1])
+    equal, jnd = (float(one) for one in re.search(r"equal at ([0-9.]+) .*JND ([0-9.]+) %", message).groups())
     assert 1.15 < threshold < 1.5 and 0.85 < equal < 1.15 and 14 < jnd < 30
     assert len(experiment.read_log(tmp_path / "constant.jsonl")[1]) == 112

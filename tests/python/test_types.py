@@ -36,15 +36,15 @@ def test_stub_file_lists_exactly_the_members_of_core():
             continue
         members = {one.name: one for one in node.body if isinstance(one, ast.FunctionDef)}
         assert set(members) == _public(vars(here)), name
-        for method, told in members.items():
+        for method, stub_function in members.items():
             if not isinstance(vars(here)[method], property):
-                _same_arguments(told, getattr(here, method))
+                _same_arguments(stub_function, getattr(here, method))
 
 
-def _same_arguments(told, here):
+def _same_arguments(stub_function, here):
     """Compares a stub with the first line of a docstring, where pybind11 writes the arguments."""
     first = here.__doc__.splitlines()[0]
-    arguments = [one.arg for one in told.args.args + told.args.kwonlyargs if one.arg != "self"]
+    arguments = [one.arg for one in stub_function.args.args + stub_function.args.kwonlyargs if one.arg != "self"]
     named = [part.split(":")[0].strip() for part in _split(first[first.index("(") + 1 : first.rindex(") ->")])]
     assert len(arguments) == len([one for one in named if one not in ("self", "*")]), first
     for asked, name in zip(arguments, [one for one in named if one not in ("self", "*")]):
@@ -73,7 +73,7 @@ def test_public_functions_have_docstrings_and_types(module):
             function = member.fget if isinstance(member, property) else member
             if not inspect.isfunction(function):
                 continue
-            assert function.__doc__ or name in ("Past",), f"{name}.{function.__name__}"
+            assert function.__doc__ or name in ("FinishedRun",), f"{name}.{function.__name__}"
             signature = inspect.signature(function)
             assert signature.return_annotation is not inspect.Signature.empty, f"{name}.{function.__name__}"
             for argument in signature.parameters.values():
@@ -90,5 +90,5 @@ def test_mypy_accepts_all_types(tmp_path):
     allowed.write_text("thimble._core.Run\nthimble._core.SimulatorSession\n")  # pybind11's metaclass; another test compares the members
     for command in (["mypy", "--config-file", str(settings), "--cache-dir", str(tmp_path), "-p", "thimble"],
                     ["mypy.stubtest", "thimble._core", "--concise", "--allowlist", str(allowed)]):
-        told = subprocess.run([sys.executable, "-m", *command], capture_output=True, text=True, check=False, cwd=PACKAGE.parent)
-        assert told.returncode == 0, told.stdout + told.stderr
+        stub_function = subprocess.run([sys.executable, "-m", *command], capture_output=True, text=True, check=False, cwd=PACKAGE.parent)
+        assert stub_function.returncode == 0, stub_function.stdout + stub_function.stderr

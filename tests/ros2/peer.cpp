@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
   DataWriter* place = writer<geometry_msgs::msg::dds_::PoseStamped_PubSubType>("rt/command/pose");
 
   WrenchStamped_ ask;
-  double f_last = 0, f_most = 0;
+  double f_last = 0, f_max = 0;
   PoseStamped_ there;
   std::array<double, 3> p{}, p_tf{}, led{};
   double off = 0;  // distance of the tip from the hand's target, m
@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
     wrench.each([&](WrenchStamped_& m) {
       check(m.header());
       f_last = m.wrench().force().x();
-      f_most = std::max(f_most, std::hypot(f_last, m.wrench().force().y(), m.wrench().force().z()));
+      f_max = std::max(f_max, std::hypot(f_last, m.wrench().force().y(), m.wrench().force().z()));
     });
     button.each([](Joy_& m) {
       check(m.header());
@@ -165,5 +165,5 @@ int main(int argc, char** argv) {
   std::printf("triangles %ld\nled to %.4f %.4f off %.4f\n", triangles, led[0], led[1], off);
   const double apart = std::hypot(p[0] - p_tf[0], p[1] - p_tf[1], p[2] - p_tf[2]);
   std::printf("sent %ld\nbad %ld\nforce %.3f most %.3f\napart %.4f\nposition %.4f %.4f %.4f\n",
-              sent, bad, f_last, f_most, apart, p[0], p[1], p[2]);
+              sent, bad, f_last, f_max, apart, p[0], p[1], p[2]);
 }

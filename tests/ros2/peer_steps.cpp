@@ -74,10 +74,10 @@ int play_steps(long steps, const std::vector<std::string>& spaces) {
   const bool pull = arms.size() == 1;  // with several arms, topics take no forces
   // A force without a reader would be lost. Wait until the reader exists, then for ten reports of
   // the run's progress, because the run has to discover this program as well.
-  constexpr long kTold = 10;
+  constexpr long kReports = 10;
   const auto late = Clock::now() + std::chrono::seconds(50);
   bool heard = false;
-  for (long from = 0; stepped.count() < from + kTold;) {
+  for (long from = 0; stepped.count() < from + kReports;) {
     if (Clock::now() > late) return 4;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     stepped.each([](UInt64_&) {});
@@ -95,9 +95,10 @@ int play_steps(long steps, const std::vector<std::string>& spaces) {
     ask.data(kTicks * static_cast<std::uint64_t>(i + 1));
     const double wanted = 1e-3 * static_cast<double>(ask.data() - 1);
     const auto all_told = [&] {
-      bool told = done == ask.data() && time >= wanted - 1e-6;
-      for (const Arm& arm : arms) told = told && arm.time_pose == time && arm.time_wrench == time;
-      return told;
+      bool complete = done == ask.data() && time >= wanted - 1e-6;
+      for (const Arm& arm : arms)
+        complete = complete && arm.time_pose == time && arm.time_wrench == time;
+      return complete;
     };
     auto again = Clock::now();
     while (!all_told()) {

@@ -46,19 +46,19 @@ TEST(RosNames, RotationsConvertLikeVectors) {
 }
 
 TEST(RosNames, OmniJointsHaveTheOffsetsOfTheOmniDrivers) {
-  const std::array<double, 6> told =
+  const std::array<double, 6> angles =
       joint_angles(RosStyle::kOmni, {0.1, 0.2, 0.7}, {0.25F, 0.5F, 0.75F});
   const double pi = std::numbers::pi;
   const std::array<double, 6> expected{-0.1, 0.2, 0.5, pi - 0.25, -0.75 * pi - 0.5, -pi - 0.75};
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_DOUBLE_EQ(told[i], expected[i]);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_DOUBLE_EQ(angles[i], expected[i]);
   EXPECT_EQ(joint_names(RosStyle::kOmni, 3),
             (std::vector<std::string>{"waist", "shoulder", "elbow"}));
   EXPECT_EQ(joint_names(RosStyle::kPlain, 6).back(), "gimbal3");
 }
 
 TEST(RosNames, ConvertAnyNameToAValidFrame) {
-  EXPECT_EQ(frame_word("the ball-1"), "the_ball_1");
-  EXPECT_EQ(frame_word(""), "_");
+  EXPECT_EQ(frame_name_of("the ball-1"), "the_ball_1");
+  EXPECT_EQ(frame_name_of(""), "_");
 }
 
 TEST(SteppedClock, WaitsForPermits) {
@@ -95,12 +95,12 @@ TEST(RosSteps, CompleteAfterTheTopicsOfAllArms) {
   steps.expect(2);
   steps.permit(5);
   steps.done(5);
-  steps.tell(0, 5);
-  EXPECT_FALSE(steps.all_told(5));
-  steps.tell(1, 4);
-  EXPECT_FALSE(steps.all_told(5));
-  steps.tell(1, 5);
-  EXPECT_TRUE(steps.all_told(5));
+  steps.set_published(0, 5);
+  EXPECT_FALSE(steps.all_published(5));
+  steps.set_published(1, 4);
+  EXPECT_FALSE(steps.all_published(5));
+  steps.set_published(1, 5);
+  EXPECT_TRUE(steps.all_published(5));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "ros2/ros_words.h"
+#include "ros2/ros_option_strings.h"
 
 namespace thimble::ros2 {
 namespace {

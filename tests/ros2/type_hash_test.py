@@ -78,11 +78,11 @@ def main():
     if len(table) != len(topics):
         print(f"{len(topics)} types are topics, {len(table)} have a hash")
         wrong += 1
-    for dds_name, told in table.items():
+    for dds_name, listed in table.items():
         package, _, _, short = dds_name.split("::")
         computed = hash_of(types, f"{package}/msg/{short[:-1]}")
-        if computed != told:
-            print(f"{dds_name}: the table has {told}, the IDL gives {computed}")
+        if computed != listed:
+            print(f"{dds_name}: the table has {listed}, the IDL gives {computed}")
             wrong += 1
     # Hashes that ROS 2 Kilted generates for these [S hpmicro/hpm_sdk, middleware/microros/kilted].
     published = {
@@ -90,8 +90,8 @@ def main():
         "sensor_msgs/msg/JointState": "RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e",
         "visualization_msgs/msg/MarkerArray": "RIHS01_86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf",
     }
-    for name, told in published.items():
-        if hash_of(types, name) != told:
+    for name, listed in published.items():
+        if hash_of(types, name) != listed:
             print(f"{name}: {hash_of(types, name)} is not what ROS 2 has")
             wrong += 1
     print(f"{len(table)} hashes, {wrong} wrong")

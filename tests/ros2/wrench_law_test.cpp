@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "ros2/message_check.h"
-#include "ros2/ros_words.h"
+#include "ros2/ros_option_strings.h"
 
 namespace thimble::ros2 {
 namespace {
@@ -149,7 +149,7 @@ TEST(WrenchCheck, ReturnsTheProblem) {
   EXPECT_EQ(check_message({1, 2, 3}, {0, 0, kInf}, "world", "world"), MessageVerdict::kNotFinite);
 }
 
-TEST(RosWords, RefuseInvalidOptions) {
+TEST(RosOptionStrings, RefuseInvalidOptions) {
   EXPECT_TRUE(ros_options({}));
   EXPECT_TRUE(ros_options({.name_space = "/lab/phantom_1"}));
   for (const char* bad : {"phantom", "/", "/phantom/", "/1st", "/a b", "/a//b", "/ä"}) {
@@ -167,7 +167,7 @@ TEST(RosWords, RefuseInvalidOptions) {
   EXPECT_FALSE(ros_options({.force_limit = std::numeric_limits<double>::quiet_NaN()}));
 }
 
-TEST(RosWords, SetTheOptions) {
+TEST(RosOptionStrings, SetTheOptions) {
   const auto omni = ros_options({.names = "omni", .force = "replace", .frames = "map,stylus"});
   ASSERT_TRUE(omni);
   EXPECT_EQ(omni->style, RosStyle::kOmni);

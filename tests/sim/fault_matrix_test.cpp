@@ -28,8 +28,8 @@ int watchdog_of(const TestedArm& arm) {
 struct Seen {
   std::int64_t off_after = 0;  ///< ms until the motors permanently had no current; -1: never
   driver::Fault cause = driver::Fault::kNone;
-  bool named_late = false;  ///< the driver sent a force after it had reported a cause
-  bool told = true;         ///< at the end: the driver knows whether the arm accepted zero force
+  bool named_late = false;    ///< the driver sent a force after it had reported a cause
+  bool zero_reported = true;  ///< at the end: the driver knows whether the arm accepted zero force
 };
 
 device_sim::WiringSettings wiring_of(const TestedFault& fault) {
@@ -86,8 +86,8 @@ Seen watch(FaultRig& rig, const TestedFault& fault, int promised_ticks = 0) {
   if (ends) {
     rig.cable().order(*device_sim::usb::parse_fault(fault.order));
     rig.end();
-    seen.told = rig.device().zero_assured() ? rig.device().f_sent_W().norm() == 0
-                                            : rig.device().fault() != driver::Fault::kNone;
+    seen.zero_reported = rig.device().zero_assured() ? rig.device().f_sent_W().norm() == 0
+                                                     : rig.device().fault() != driver::Fault::kNone;
   }
   for (int i = 0; i < std::max(kAfter, promised_ticks + 20); ++i) {
     const bool named = rig.device().fault() != driver::Fault::kNone;
@@ -109,7 +109,7 @@ Seen watch(FaultRig& rig, const TestedFault& fault, int promised_ticks = 0) {
 }
 
 std::string measured(const Seen& seen) {
-  const std::string ticks = seen.off_after < 0 ? "goes on" : std::to_string(seen.off_after);
+  const std::string ticks = seen.off_after < 0 ? "continues" : std::to_string(seen.off_after);
   return seen.cause == driver::Fault::kNone ? ticks : ticks + " " + std::string(name(seen.cause));
 }
 
@@ -164,7 +164,7 @@ void check_touch(const TestedFault& fault, const TestedArm& arm, Phase phase) {
 
   EXPECT_TRUE(rig.within_limit());
   EXPECT_FALSE(seen.named_late) << "a force was sent after the cause was reported";
-  EXPECT_TRUE(seen.told) << "the arm did not accept zero force, and this was not reported";
+  EXPECT_TRUE(seen.zero_reported) << "the arm did not accept zero force, and this was not reported";
   if (promise.promise == Promise::kOff || promise.promise == Promise::kArmOff) {
     EXPECT_GE(seen.off_after, 0) << "the motors still pull";
     EXPECT_LE(seen.off_after, promise.ticks);

@@ -128,7 +128,7 @@ void FaultRig::build_arm() {
   }
   if (tested_.kind == driver::ArmKind::kHfabLine) {
     device_sim::SimulatedArmSettings settings = file_.simulated;
-    settings.firmware.speaks = tested_.kind;
+    settings.firmware.protocol = tested_.kind;
     settings.firmware.line_model = file_.board_model;
     own_arm_ = std::make_unique<support::LineArm>(
         device_sim::SimulatedArm::make(serial(), settings, std::move(path)).value());

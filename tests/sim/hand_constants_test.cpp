@@ -148,7 +148,7 @@ TEST(HandConstants, EveryHandRestsOnEveryShippedWall) {
         unrest_of(scene.arms.front().arm, scene.rate, object.stiffness, object.damping);
     EXPECT_EQ(unrest.loud, 0) << object.name << " " << object.stiffness << ", " << unrest.who;
     most = std::max(most, unrest.force_rms);
-    const stability::Carried carried = stability::carried_by(
+    const stability::StabilityLimits carried = stability::stability_limits(
         scene.arms.front().arm, stability::loop_times(scene.arms.front().arm, scene.rate),
         object.stiffness, object.damping);
     EXPECT_LE(object.stiffness, carried.stiffness_safe) << object.name;
@@ -164,8 +164,8 @@ TEST(HandConstants, EveryHandRestsOnTunedWalls) {
         scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/" + name + ".yaml");
     ASSERT_TRUE(arm);
     for (const double damping : {0.0, 1.0}) {
-      const stability::Carried carried =
-          stability::carried_by(*arm, stability::loop_times(*arm, 1000), 800, damping);
+      const stability::StabilityLimits carried =
+          stability::stability_limits(*arm, stability::loop_times(*arm, 1000), 800, damping);
       EXPECT_LT(carried.stiffness_any_hand, 0.7 * carried.stiffness_exact);
       EXPECT_LT(carried.stiffness_safe, carried.stiffness_any_hand);
       EXPECT_DOUBLE_EQ(carried.worst_hand.damping, arm->simulated.hand.damping / 3);
@@ -182,8 +182,8 @@ TEST(HandConstants, GuardLowImpedanceGripOscillates) {
   const auto arm =
       scene::load_arm(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml");
   ASSERT_TRUE(arm);
-  const stability::Carried carried =
-      stability::carried_by(*arm, stability::loop_times(*arm, 1000), 800, 0);
+  const stability::StabilityLimits carried =
+      stability::stability_limits(*arm, stability::loop_times(*arm, 1000), 800, 0);
   // 0.7 of the edge with the hand of the file; a third of its damping is not enough.
   const Unrest unrest = unrest_of(*arm, 1000, 0.7 * carried.stiffness_exact, 0);
   EXPECT_EQ(unrest.loud, 27);  // all with 1 N s/m, and none with 3 or 9

@@ -50,7 +50,7 @@ class GatedWall {
           .work = sent_ * rig.way(), .move_W = {rig.way(), 0, 0}, .f_sent_W = {sent_, 0, 0}};
       sent_ = gate.pass_guarded({requested, 0, 0}, {v, 0, 0}, dt, flow).f_T_W().x();
       requested_ = requested;
-      most_damping = std::max(most_damping, v != 0 ? (requested_ - sent_) / v : 0);
+      max_damping = std::max(max_damping, v != 0 ? (requested_ - sent_) / v : 0);
       most_force = std::max(most_force, std::abs(sent_));
       return sent_;
     });
@@ -58,7 +58,7 @@ class GatedWall {
 
   WallRig rig;
   SafetyGate gate;
-  double most_damping = 0, most_force = 0;
+  double max_damping = 0, most_force = 0;
 
  private:
   double sent_ = 0, requested_ = 0;
@@ -106,13 +106,13 @@ TEST(HardCaseController, BouncesDoNotGrow) {
     growth = std::max(growth, bounces[i] / std::max(bounces[i - 1], 1e-4));
   }
   EXPECT_LE(growth, 1.05);
-  EXPECT_GE(wall.gate.counters().energy_least, -2e-3);
-  EXPECT_LE(wall.most_damping, 0.075 / 1e-3 * (1 + 1e-9));
+  EXPECT_GE(wall.gate.counters().min_energy, -2e-3);
+  EXPECT_LE(wall.max_damping, 0.075 / 1e-3 * (1 + 1e-9));
   record_hard_case(11, "K = 3 N/mm, b = 0.005, pulled with 1 N",
                    "<= largest bounce over the one before", growth, 1.05, "1");
   record_hard_case(11, "the same", "<= energy given beyond what was taken",
-                   -1e3 * wall.gate.counters().energy_least, 2, "mJ");
-  record_hard_case(11, "the same", "<= largest damping, m / T being 75", wall.most_damping, 75,
+                   -1e3 * wall.gate.counters().min_energy, 2, "mJ");
+  record_hard_case(11, "the same", "<= largest damping, m / T being 75", wall.max_damping, 75,
                    "N s/m");
   record_hard_case(11, "the same", "<= last bounce over the first",
                    bounces.back() / bounces.front(), 1, "1");
@@ -254,9 +254,9 @@ TEST(HardCaseController, ArmFileStopsAStiffWall) {
   EXPECT_LE(tamed->force_max, arm.limits.force_max + 1e-9);
   // Allowance and onset: the energy that may go out before the controller reaches its full damping.
   const double limit = 2e3 * (trial.energy.allowance + trial.energy.onset);
-  EXPECT_LE(-1e3 * tamed->gate.energy_least, limit);
+  EXPECT_LE(-1e3 * tamed->gate.min_energy, limit);
   record_hard_case(11, "2.5 N/mm through wire and gate, stage as shipped",
-                   "<= most energy given beyond what was taken", -1e3 * tamed->gate.energy_least,
+                   "<= most energy given beyond what was taken", -1e3 * tamed->gate.min_energy,
                    limit, "mJ");
   record_hard_case(11, "the same", ">= oscillation without the stage over oscillation with it",
                    wild->oscillation / tamed->oscillation, 3, "1");
@@ -274,7 +274,7 @@ TEST(HardCaseController, BookedEnergyMatchesTheMotors) {
   const auto touch = stability::press_on_wall(arm, trial);
   ASSERT_TRUE(touch);
   EXPECT_GT(touch->energy_given, 5e-3);
-  const double booked = -touch->gate.energy_least;
+  const double booked = -touch->gate.min_energy;
   EXPECT_NEAR(booked / touch->energy_given, 1, 0.02);
   record_hard_case(11, "2.5 N/mm through wire and gate: energy booked",
                    "<= error against that of the true motors",

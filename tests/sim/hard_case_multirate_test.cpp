@@ -71,7 +71,7 @@ struct Felt {
 };
 
 double carried(const scene::ArmFile& arm) {
-  return stability::carried_by(arm, stability::loop_times(arm, 1000), 800, 0).stiffness_exact;
+  return stability::stability_limits(arm, stability::loop_times(arm, 1000), 800, 0).stiffness_exact;
 }
 
 Felt run(const scene::ArmFile& arm, SlowSide& slow, Law law, const Way& way, double duration) {

@@ -136,7 +136,7 @@ struct Press {
     };
     const std::atomic<bool> stop{false};
     run_servo(device, clock, driver::ForceLaw(law), driver::TickSink(sink),
-              {.period_ns = 1'000'000, .ticks = ticks, .outlive_faults = true}, stop);
+              {.period_ns = 1'000'000, .ticks = ticks, .continue_after_faults = true}, stop);
     fault = device.fault();
     wire = device.wire_counters();
     clock.sleep_until_ns(clock.now_ns() + 2'000'000);

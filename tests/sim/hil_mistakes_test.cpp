@@ -34,7 +34,7 @@ class Desk {
 
   driver::Result<std::unique_ptr<bringup::BenchArm>> open(TipHold hold) {
     device_sim::SimulatedArmSettings settings = truth.simulated;
-    settings.firmware.speaks = truth.protocol;
+    settings.firmware.protocol = truth.protocol;
     settings.firmware.line_model = truth.board_model;
     scene::ArmFile file = believed;
     std::vector<std::pair<double, Eigen::Vector3d>> way{{0, believed.workspace.middle()}};
@@ -46,7 +46,7 @@ class Desk {
     if (hold == TipHold::kMass) {
       settings.hand.mass += kMass;
       settings.weight_B += truth.R_WB.transpose() * Eigen::Vector3d(0, 0, -9.80665 * kMass);
-      file.limits.soft_start = driver::GateLimits::kSoftStartLeast;
+      file.limits.soft_start = driver::GateLimits::kSoftStartMin;
     }
     std::vector<device_sim::HandPath::Point> points;
     for (const auto& [time, p_WH] : way) {

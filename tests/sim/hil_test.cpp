@@ -151,7 +151,7 @@ EdgeOfWall edge_with(double delay_ms, const EdgeSearch& search, double& ratio,
   ratio = found->stiffness.median / edge_by_law(arm, search.speed);
   std::printf("%.1f ms: %.0f N/m (%.0f to %.0f), %.2f of the law's; gave %.3g mJ, %d walls\n",
               delay_ms, found->stiffness.median, found->stiffness.low, found->stiffness.high, ratio,
-              1e3 * found->given_most, found->walls);
+              1e3 * found->max_energy_given, found->walls);
   return *found;
 }
 
@@ -166,7 +166,7 @@ TEST(Hil, FindsTheWallOfTheLaw) {
     // tip.
     EXPECT_GT(ratio, 0.9);
     EXPECT_LT(ratio, delay_ms <= 1 ? 1.1 : 1.5);
-    EXPECT_LE(edge.force_most, kHilForceMax);
+    EXPECT_LE(edge.max_force, kHilForceMax);
   }
 }
 
@@ -183,8 +183,8 @@ TEST(Hil, RemovesAWallThatAddsEnergy) {
   double ratio = 0;
   const EdgeOfWall edge = edge_with(4, {.coarse = 8, .starts = 1}, ratio);
   EXPECT_TRUE(edge.grew);
-  EXPECT_GT(edge.given_most, kick);
-  EXPECT_LT(edge.given_most, 20 * kick);
+  EXPECT_GT(edge.max_energy_given, kick);
+  EXPECT_LT(edge.max_energy_given, 20 * kick);
 }
 
 /// Returns an arm of the file whose tip begins up to 3 mm away, at other positions between encoder
@@ -257,7 +257,7 @@ TEST(Hil, JudgesTheStiffestWallToATenth) {
 
 TEST(Hil, IntervalsContainTheTrueMedian) {
   std::mt19937 draw(static_cast<std::uint32_t>(support::seed_of(5)));
-  for (const int count : {kMedianLeast, 9, 33, 65}) {
+  for (const int count : {kMedianMin, 9, 33, 65}) {
     const int tries = 4000;
     int held = 0;
     for (int i = 0; i < tries; ++i) {

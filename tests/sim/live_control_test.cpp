@@ -137,7 +137,7 @@ Turned turn(const std::filesystem::path& scene_file, const std::string& knob_nam
   driver::TickRecord last;
   double lowest = bounds.initial, highest = bounds.initial;
   for (const auto& row : session->ticks()) {
-    reader->turn_knob(knob, row.tick / 400 % 2 == 0 ? bounds.most : bounds.least);
+    reader->turn_knob(knob, row.tick / 400 % 2 == 0 ? bounds.max : bounds.min);
     const driver::DeviceState state = state_of(row, dt);
     now.knobs.step(*shared, last, dt);
     const auto f_now = now.objects->touch()(state);
@@ -150,7 +150,7 @@ Turned turn(const std::filesystem::path& scene_file, const std::string& knob_nam
     highest = std::max(highest, now.knobs.value(knob));
     last = told(state, f_now);
   }
-  turned.range = (highest - lowest) / (bounds.most - bounds.least);
+  turned.range = (highest - lowest) / (bounds.max - bounds.min);
   return turned;
 }
 
@@ -229,7 +229,7 @@ TEST(LiveKnobs, ReachTheirTargetWithoutHeap) {
   EXPECT_EQ(reader->knob(0), 123);
 }
 
-TEST(HeldKnobs, ReachTheirTargetWithoutHeap) {
+TEST(ProgramKnobs, ReachTheirTargetWithoutHeap) {
   SessionOptions options;
   const auto plain = open(shipped("rubber"), options);
   EXPECT_TRUE(plain->knobs().empty());
@@ -277,7 +277,7 @@ TEST(LiveKnobs, LoopIsStableAtBothEndsOfEveryKnob) {
       const auto reader = reader_of(*session);
       const auto& knob = reader->scene().knobs[turned / 2];
       SCOPED_TRACE(name + ", " + knob.name);
-      reader->turn_knob(turned / 2, turned % 2 == 0 ? knob.least : knob.most);
+      reader->turn_knob(turned / 2, turned % 2 == 0 ? knob.min : knob.max);
       session->run(std::atomic<bool>{false});
       EXPECT_EQ(session->device().fault(), driver::Fault::kNone);
       // Dissipation continues; 1 uJ is the effect of rounding and encoder counts.

@@ -67,7 +67,7 @@ class MixedArms : public ::testing::Test {
     options_.own_clock = std::make_shared<driver::VirtualClock>();
     terminal_ = {.there = true,
                  .key = [this] { return std::exchange(key_, session::EnterKey::kNothing); },
-                 .tell = [this](const std::string& line) { told_ += line + "\n"; },
+                 .print_line = [this](const std::string& line) { told_ += line + "\n"; },
                  .ask = [this](const std::string& line) { told_ += line + "\n"; }};
   }
 
@@ -78,7 +78,7 @@ class MixedArms : public ::testing::Test {
     use.arm.serial = "board_of_" + name;
     use.terms.arm.path = kSource / "app/arms/vintage_phantom.yaml";
     use.terms.arm.file = scene::load_arm(use.terms.arm.path).value();
-    use.terms.force_most = force_most_;
+    use.terms.max_force = max_force_;
     const std::size_t board = boards_.size();
     boards_.emplace_back();
     use.open_link = [this, board, away](
@@ -105,7 +105,7 @@ class MixedArms : public ::testing::Test {
   session::Terminal terminal_;
   session::EnterKey key_ = session::EnterKey::kNothing;
   std::string told_;
-  double force_most_ = 4;
+  double max_force_ = 4;
   bool pulled_ = false;
   // They outlive the sessions of a test
   std::vector<std::unique_ptr<scene::ArmSimulation>> boards_;
@@ -153,7 +153,7 @@ TEST_F(MixedArms, EachRealArmMustBeAtItsStartPose) {
 }
 
 TEST_F(MixedArms, RealArmStaysWithinItsLimits) {
-  force_most_ = 0.5;
+  max_force_ = 0.5;
   make_real("right");
   auto made = prepared();
   ASSERT_TRUE(made) << made.error().message;

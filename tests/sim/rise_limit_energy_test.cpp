@@ -17,10 +17,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTick = 1e-3;      // s
-constexpr double kForceMost = 8.5;  // N
-constexpr double kMass = 0.075;     // kg
-constexpr double kRise = 2000;      // N/s, as shipped
+constexpr double kTick = 1e-3;     // s
+constexpr double kForceMax = 8.5;  // N
+constexpr double kMass = 0.075;    // kg
+constexpr double kRise = 2000;     // N/s, as shipped
 
 /// Limiter between the force law and the motors of the throws.
 enum Limiter : std::size_t {
@@ -36,7 +36,7 @@ class Between {
   Between(Limiter limiter, double rise_max)
       : limiter_(limiter),
         rise_(rise_max * kTick),
-        gate_({.force_max = kForceMost,
+        gate_({.force_max = kForceMax,
                .speed_max = 50,
                .rise_max = rise_max,
                .soft_start = 1e-9,
@@ -47,7 +47,7 @@ class Between {
 
   Vector3d pass(const Vector3d& wanted, const Vector3d& v) {
     if (limiter_ == kGate) return gate_.pass(wanted, v, kTick).f_T_W();
-    Vector3d f = wanted * std::min(1.0, kForceMost / std::max(wanted.norm(), 1e-300));
+    Vector3d f = wanted * std::min(1.0, kForceMax / std::max(wanted.norm(), 1e-300));
     if (limiter_ == kLength) {
       f *= std::min(1.0, (last_.norm() + rise_) / std::max(f.norm(), 1e-300));
     } else if (limiter_ == kSymmetric) {

@@ -20,7 +20,7 @@
 #include "studies/fuzz_scenes/trouble_run.h"
 #include "support/contact_walk.h"
 #include "support/long_form.h"
-#include "support/meshes/hollows.h"
+#include "support/meshes/concave_solids.h"
 #include "support/scratch.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/scene/arm_simulation.h"
@@ -85,13 +85,13 @@ TEST(TuneRest, WarnsOfRandomScenesThatOscillateAndOfNoOthers) {
     const auto scene = scene::load_scene(file);
     ASSERT_TRUE(scene);
     ++ran;
-    bool oscillates = found.limit_cycle > studies::kLimitCycleMost;
+    bool oscillates = found.limit_cycle > studies::kLimitCycleMax;
     const bool alarm = !warnings_of(*scene).empty();
     if (alarm && !oscillates) {
       // If the hand touches nothing at the end of its path, tune stops it earlier on the path.
       const auto trial = try_rests(*scene, scene->arms.front().arm.simulated.hand);
       ASSERT_TRUE(trial && trial->worst());
-      oscillates = oscillation_stopped_at(file, trial->worst()->time) > studies::kLimitCycleMost;
+      oscillates = oscillation_stopped_at(file, trial->worst()->time) > studies::kLimitCycleMax;
     }
     const bool rule = !rest_causes(*scene).empty();
     oscillate += oscillates;
@@ -136,7 +136,7 @@ TEST(TuneRest, IsSilentOnShippedScenes) {
 TEST(TuneRest, IsSilentInAGroove) {
   const auto folder = support::scratch_folder();
   const double slope = std::atan2(0.017, 0.03), wall = std::hypot(0.017, 0.03);
-  const support::Hollow hollow = support::groove(slope, slope, wall, wall, {-0.03, 0.03});
+  const support::ConcaveSolid hollow = support::groove(slope, slope, wall, wall, {-0.03, 0.03});
   ASSERT_TRUE(render::save_mesh(hollow.mesh, folder / "hollow.off"));
   for (const std::string tracker : {"edge_planes", "offset", "compact", "god_object"}) {
     const auto file = folder / "groove.yaml";

@@ -313,7 +313,7 @@ TEST(TwoHands, CallersForOneArmGetAnError) {
     return opened ? std::string("opened") : opened.error().message;
   };
   session::SessionOptions options;
-  EXPECT_NE(refusal(options).find("the scene has 2 arms, and this knows of one alone"),
+  EXPECT_NE(refusal(options).find("the scene has 2 arms, but this command supports one"),
             std::string::npos)
       << refusal(options);
   options.several_arms = true;
@@ -323,12 +323,12 @@ TEST(TwoHands, CallersForOneArmGetAnError) {
   EXPECT_NE(refusal(other).find("--hand mouse supports one arm only"), std::string::npos);
   other = options;
   other.arm_file = "touch";
-  EXPECT_NE(refusal(other).find("in place of all"), std::string::npos);
+  EXPECT_NE(refusal(other).find("cannot replace them all"), std::string::npos);
   other = options;
   other.adjust = [](scene::Scene& scene) { scene.arms[1].hand[1].p_W = {0, 0.4, 0}; };
   EXPECT_NE(refusal(other).find("the arm \"right\": At "), std::string::npos) << refusal(other);
   other.adjust = [](scene::Scene& scene) { scene.objects[0].body.shape.clay.emplace(); };
-  EXPECT_NE(refusal(other).find("by one arm alone"), std::string::npos) << refusal(other);
+  EXPECT_NE(refusal(other).find("by one arm only"), std::string::npos) << refusal(other);
 }
 
 TEST(TwoHands, ExistingRecordingLeavesAllFilesUnchanged) {

@@ -47,7 +47,7 @@ TEST_P(WatchedScene, NoHandLooksLikeABrokenArm) {
     EXPECT_GT(session.statistics().force_max(), 0.05) << "the scene was touched";
     EXPECT_EQ(session.device().heat().lowered(), 0u)
         << "heat must not limit the force in a shipped scene";
-    EXPECT_GT(session.device().heat().heat_most(), 0);
+    EXPECT_GT(session.device().heat().max_heat(), 0);
   }
 }
 

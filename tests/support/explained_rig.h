@@ -40,7 +40,7 @@ class ExplainedRig {
     account_.sent(sent_W_);
     std::copy_backward(felt_.begin(), felt_.end() - 1, felt_.end());
     felt_[0] = sent_W_;
-    most_work_ = std::max(most_work_, work_);
+    max_work_ = std::max(max_work_, work_);
     p_W_ = p_W;
     begun_ = true;
     return sent_W_;
@@ -52,9 +52,9 @@ class ExplainedRig {
   }
 
   const driver::SafetyGate& gate() const { return gate_; }
-  double work() const { return work_; }            ///< Work of the delayed force on the hand, J.
-  double most_work() const { return most_work_; }  ///< Largest value of `work` so far, J.
-  double dissipated() const {                      ///< Energy dissipated by the assumed damping, J.
+  double work() const { return work_; }          ///< Work of the delayed force on the hand, J.
+  double max_work() const { return max_work_; }  ///< Largest value of `work` so far, J.
+  double dissipated() const {                    ///< Energy dissipated by the assumed damping, J.
     return settings_.dissipation * way_squared_ / kTick;
   }
   /// Returns the force that acts on the tip now, N. It is delayed by the wire.
@@ -66,13 +66,13 @@ class ExplainedRig {
   driver::EnergyGuardSettings settings_;
   driver::SafetyGate gate_;
   driver::WorkAccount account_;
-  std::array<Eigen::Vector3d, driver::EnergyGuardSettings::kDelayMost + 2> felt_ = [] {
-    std::array<Eigen::Vector3d, driver::EnergyGuardSettings::kDelayMost + 2> zeros;
+  std::array<Eigen::Vector3d, driver::EnergyGuardSettings::kDelayMax + 2> felt_ = [] {
+    std::array<Eigen::Vector3d, driver::EnergyGuardSettings::kDelayMax + 2> zeros;
     zeros.fill(Eigen::Vector3d::Zero());
     return zeros;
   }();
   Eigen::Vector3d p_W_{0, 0, 0}, sent_W_{0, 0, 0};
-  double work_ = 0, most_work_ = 0, way_squared_ = 0;
+  double work_ = 0, max_work_ = 0, way_squared_ = 0;
   bool begun_ = false;
 };
 

@@ -16,7 +16,7 @@ void* taken(std::size_t size, std::size_t alignment) {
   return memory;
 }
 
-void given_back(void* memory) {
+void freed(void* memory) {
   if (guarded) ++heap_calls;
   std::free(memory);
 }
@@ -45,28 +45,28 @@ void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
   return taken(size, kDefault);
 }
 void operator delete(void* memory) noexcept {
-  given_back(memory);
+  freed(memory);
 }
 void operator delete[](void* memory) noexcept {
-  given_back(memory);
+  freed(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-  given_back(memory);
+  freed(memory);
 }
 void operator delete[](void* memory, std::size_t) noexcept {
-  given_back(memory);
+  freed(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-  given_back(memory);
+  freed(memory);
 }
 void operator delete[](void* memory, std::align_val_t) noexcept {
-  given_back(memory);
+  freed(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  given_back(memory);
+  freed(memory);
 }
 void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
-  given_back(memory);
+  freed(memory);
 }
 
 namespace thimble::support {

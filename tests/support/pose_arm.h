@@ -23,7 +23,7 @@ struct PoseArm {
   double strongest = 3;    ///< Largest force of the arm, N.
   std::uint16_t buttons = 0;
   bool lost = false, silent = false, refuses = false, stuck = false;
-  bool says_still = false;               ///< Always reports a velocity of zero.
+  bool reports_no_velocity = false;      ///< Always reports a velocity of zero.
   std::vector<Eigen::Vector3d> taken_B;  ///< Every force received, N.
   std::int64_t time_ns = 0;
 
@@ -54,9 +54,9 @@ class PoseLink final : public driver::ArmLink {
     arm_.advance_to(clock_.now_ns());
     if (arm_.lost) return {driver::LinkStatus::kLost};
     if (arm_.silent) return {driver::LinkStatus::kNothing};
-    if (!arm_.stuck) p_told_ = arm_.p_BT;
-    sample.pose.p_BT = p_told_;
-    sample.v_BT = arm_.says_still ? Eigen::Vector3d(0, 0, 0) : arm_.v_BT;
+    if (!arm_.stuck) p_reported_ = arm_.p_BT;
+    sample.pose.p_BT = p_reported_;
+    sample.v_BT = arm_.reports_no_velocity ? Eigen::Vector3d(0, 0, 0) : arm_.v_BT;
     sample.R_BT = arm_.R_BT;
     sample.gripper = arm_.gripper;
     sample.buttons = arm_.buttons;
@@ -79,7 +79,7 @@ class PoseLink final : public driver::ArmLink {
   PoseArm& arm_;
   driver::Clock& clock_;
   driver::ArmTraits traits_;
-  Eigen::Vector3d p_told_{0, 0, 0};
+  Eigen::Vector3d p_reported_{0, 0, 0};
 };
 
 }  // namespace thimble::support

@@ -23,7 +23,7 @@ class VariantSettings final : public render::SettingsReader {
   bool has(std::string_view key) override { return values_.contains(key) || lists_.contains(key); }
   void number(std::string_view key, double& value, const render::NumberLimits& limits) override {
     if (const auto* found = find<double>(key, limits.required)) {
-      check(key, *found, limits) ? value = *found : value = limits.least;
+      check(key, *found, limits) ? value = *found : value = limits.min;
     }
   }
   void vector(std::string_view key, Eigen::Vector3d& value,
@@ -70,7 +70,7 @@ class VariantSettings final : public render::SettingsReader {
     return nullptr;
   }
   bool check(std::string_view key, double value, const render::NumberLimits& limits) {
-    const bool good = std::isfinite(value) && value >= limits.least && value <= limits.most;
+    const bool good = std::isfinite(value) && value >= limits.min && value <= limits.max;
     if (!good) reject(key, "expected a number within its limits");
     return good;
   }

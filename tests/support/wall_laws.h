@@ -17,13 +17,13 @@ namespace thimble::support {
 inline double passive_damping(double stiffness, double damping, double period, double delay = 0) {
   constexpr int kAngles = 20'000;
   const double d = delay / period;
-  double most = -std::numeric_limits<double>::infinity();
+  double max = -std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kAngles; ++i) {
     const double a = std::numbers::pi * i / kAngles;
     const double ratio = i > 0 ? std::sin((d + 0.5) * a) / std::sin(0.5 * a) : 2 * d + 1;
-    most = std::max(most, 0.5 * stiffness * period * ratio - damping * std::cos((1 + d) * a));
+    max = std::max(max, 0.5 * stiffness * period * ratio - damping * std::cos((1 + d) * a));
   }
-  return most;
+  return max;
 }
 
 /// Response of a wall after any start [PHYSICS 1.4, Diolaiti et al.].

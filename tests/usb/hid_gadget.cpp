@@ -24,7 +24,7 @@ int print_report_descriptor(const std::string& arm) {
   return std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size() ? 0 : 1;
 }
 
-int be_gadget(const std::string& arm, const std::string& node) {
+int run_gadget(const std::string& arm, const std::string& node) {
   const auto made = device_sim::usb::make_usb_arm(arm, {});
   const int file = ::open(node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (!made || file < 0) {

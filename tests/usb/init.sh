@@ -192,7 +192,7 @@ for arm in $faulty; do
   unplug
   # The arm's side counts too: each kind must have hit packets, otherwise the checks above prove nothing.
   for kind in $(echo "$kinds" | tr '|' '\n' | cut -d' ' -f1); do
-    hits=$(sed -n "s/^Fault $kind hit \([0-9]*\) packets.*/\1/p" /tmp/plug.log)
+    hits=$(sed -n "s/^Fault $kind affected \([0-9]*\) packets.*/\1/p" /tmp/plug.log)
     [ "${hits:-0}" -gt 0 ] || echo "FAIL $arm with faults: no packet was hit by '$kind'"
   done
   echo "NOTE $arm with faults done after $(uptime) s"

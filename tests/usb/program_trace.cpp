@@ -90,7 +90,7 @@ int trace_of_program(const VirtualArm& arm, const std::string& log, const std::s
   std::FILE* out = std::fopen(trace.c_str(), "we");
   if (out == nullptr) return verdict(false, arm.name + " program", "no trace can be written");
   std::fprintf(out, "0\n");
-  std::size_t at = 0, felt = 0, unknown = 0, held_back = 0, opening = 0;
+  std::size_t at = 0, felt = 0, unknown = 0, gate_limited = 0, opening = 0;
   double most = 0;
   bool open = false;  // the gate is open, and a program has switched on the force
   for (const RecordedTick& tick : ticks) {
@@ -103,7 +103,7 @@ int trace_of_program(const VirtualArm& arm, const std::string& log, const std::s
     if (pushes) {
       opening += open ? 0U : 1U;
       unknown += open && !known ? 1U : 0U;
-      held_back += open && known && !same(tick.f_wanted, tick.f_sent) ? 1U : 0U;
+      gate_limited += open && known && !same(tick.f_wanted, tick.f_sent) ? 1U : 0U;
     }
     const bool own = open && known && same(tick.f_wanted, tick.f_sent);
     felt += own && pushes ? 1U : 0U;
@@ -113,11 +113,11 @@ int trace_of_program(const VirtualArm& arm, const std::string& log, const std::s
                  tick.counts[1], tick.counts[2], f[0], f[1], f[2]);
   }
   std::fclose(out);
-  return verdict(felt >= kFew && unknown == 0 && held_back <= felt / 4 && most > 0.3,
+  return verdict(felt >= kFew && unknown == 0 && gate_limited <= felt / 4 && most > 0.3,
                  arm.name + " program",
                  std::to_string(asked.size()) + " forces requested, " + std::to_string(felt) +
                      " ticks with one of them, " + std::to_string(most) + " N at most; " +
-                     std::to_string(unknown) + " with another, " + std::to_string(held_back) +
+                     std::to_string(unknown) + " with another, " + std::to_string(gate_limited) +
                      " limited by the gate, " + std::to_string(opening) + " before it opened");
 }
 

@@ -109,7 +109,7 @@ int denied(const VirtualArm& arm) {
 /// Opens an arm whose hand has moved since the last program ended. A report that had waited in the
 /// board since then would have an old position.
 int fresh(const VirtualArm& arm) {
-  constexpr double kMost = 0.002;  // m; the hand moves 0.13 mm per tick
+  constexpr double kMovedMax = 0.002;  // m; the hand moves 0.13 mm per tick
   auto opened = open_bench(arm);
   if (!opened) return verdict(false, arm.name + " opened", opened.error().message);
   Bench& bench = **opened;
@@ -121,7 +121,7 @@ int fresh(const VirtualArm& arm) {
     bench.device->write({});
   }
   const double moved = (last - first).norm();
-  return verdict(moved < kMost, arm.name + " opened again",
+  return verdict(moved < kMovedMax, arm.name + " opened again",
                  "its first position is " + std::to_string(1e3 * moved) + " mm from the fifth");
 }
 
@@ -377,7 +377,7 @@ int run(const std::vector<std::string>& words) {
     return hang(arm);
   }
   if (what == "descriptor") return print_report_descriptor(arm.name);
-  if (what == "gadget") return be_gadget(arm.name, word(2));
+  if (what == "gadget") return run_gadget(arm.name, word(2));
   if (what == "compare") return compare_traces(arm, word(2), word(3));
   if (what == "hide") return print_hidden_file(word(1), word(2), word(3) == "cables");
   if (what == "identified") {

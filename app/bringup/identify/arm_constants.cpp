@@ -43,7 +43,7 @@ ArmConstants constants_of(const Wanted& x, const Eigen::Matrix<double, kWanted, 
 }
 
 /// With the gains' geometric mean assumed to be 1, the accelerations give the mass.
-ArmConstants by_declared_torque(const PerMass& bare, const Eigen::Vector3d& down_B) {
+ArmConstants by_declared_torque(const MassNormalisedFit& bare, const Eigen::Vector3d& down_B) {
   const Seen z = bare.theta.head<kSeen>();
   double log_gain = 0;
   for (int i = 0; i < 3; ++i) log_gain += math::log(std::abs(z[i])) / 3;
@@ -69,8 +69,9 @@ Estimate by_gain(const Estimate& torque, const Estimate& gain) {
           math::hypot(torque.plus_minus * gain.value, torque.value * gain.plus_minus)};
 }
 
-driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vector3d& down_B,
-                                           const std::optional<PerMass>& loaded,
+driver::Result<ArmConstants> arm_constants(const MassNormalisedFit& bare,
+                                           const Eigen::Vector3d& down_B,
+                                           const std::optional<MassNormalisedFit>& loaded,
                                            double added_mass) {
   for (int i = 0; i < 3; ++i) {
     if (bare.theta[i] > 0) continue;
@@ -97,7 +98,7 @@ driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vec
     normal.setZero();
     Wanted right = Wanted::Zero();
     square = 0;
-    const auto add = [&](const PerMass& fit, double added) {
+    const auto add = [&](const MassNormalisedFit& fit, double added) {
       Slope slope;
       const Seen rest = fit.theta.head<kSeen>() - shown(x, added, down_B, slope);
       const auto weight = fit.covariance.topLeftCorner<kSeen, kSeen>().ldlt();

@@ -70,7 +70,9 @@ Estimate by_gain(const Estimate& torque, const Estimate& gain);
 /// with a known mass on the tip. The added mass slows the tip by its share of the mass, whatever
 /// the motors' constants are. The error explains why no such arm exists. Real-time: never from the
 /// servo thread.
-driver::Result<ArmConstants> arm_constants(const PerMass& bare, const Eigen::Vector3d& down_B,
-                                           const std::optional<PerMass>& loaded, double added_mass);
+driver::Result<ArmConstants> arm_constants(const MassNormalisedFit& bare,
+                                           const Eigen::Vector3d& down_B,
+                                           const std::optional<MassNormalisedFit>& loaded,
+                                           double added_mass);
 
 }  // namespace thimble::bringup

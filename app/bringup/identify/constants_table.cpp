@@ -10,8 +10,8 @@
 
 #include "math/elementary.h"
 
-#include "bringup/identify/link_inertia/place_masses.h"
-#include "bringup/identify/not_identified.h"
+#include "bringup/identify/link_inertia/masses_per_pose.h"
+#include "bringup/identify/unidentified_parameters.h"
 
 namespace thimble::bringup {
 namespace {
@@ -35,7 +35,7 @@ void add_friction(const FrictionDirections& friction, Rows& rows) {
   for (std::size_t i = 0; i < 3; ++i) {
     const char axis = "xyz"[i];
     const Estimate &mean = friction.mean[i], &uneven = friction.uneven[i];
-    if (friction.directions_differ && friction.tells(static_cast<int>(i))) {
+    if (friction.directions_differ && friction.is_observable(static_cast<int>(i))) {
       const double error = math::hypot(mean.plus_minus, uneven.plus_minus);
       rows.add(fmt::format("Coulomb friction, +{}", axis), {mean.value - uneven.value, error}, 1e3,
                "mN, base");
@@ -131,9 +131,9 @@ void add_cables(const ArmConstants& found, const scene::ArmFile& file, Rows& row
   }
 }
 
-void add_waves(const Identified& identified, const scene::ArmFile& file, Rows& rows) {
-  const MotorWaves& waves = identified.waves;
-  if (!waves.told()) return;
+void add_cogging(const Identified& identified, const scene::ArmFile& file, Rows& rows) {
+  const MotorCogging& waves = identified.waves;
+  if (!waves.is_reported()) return;
   const auto& train = file.simulated.drive_train;
   const bool names = train.periods_per_turn > 0;
   const auto named = [&](double value) { return names ? std::optional(value) : std::nullopt; };
@@ -177,7 +177,7 @@ void add_links(const LinkConstants& found, const scene::ArmFile& file, Rows& row
 }
 
 /// Names a joint whose friction stands out; empty if there is none.
-std::string rubs_most_text(const Identified& identified) {
+std::string high_friction_text(const Identified& identified) {
   constexpr double kFarAbove = 3;  // [chosen: shipped arms' joints differ by less]
   if (!identified.constants.cables) return "";
   std::array<std::pair<double, int>, 3> by{};
@@ -185,9 +185,10 @@ std::string rubs_most_text(const Identified& identified) {
     by[i] = {(*identified.constants.cables)[i].coulomb.value, static_cast<int>(i)};
   }
   std::sort(by.begin(), by.end());
-  const auto& [most, joint] = by[2];
-  const double at_tip = most / std::sqrt(identified.lines.JTJ(joint, joint));
-  if (!(most > kFarAbove * by[1].first && at_tip > identified.constants.coulomb.value)) return "";
+  const auto& [highest, joint] = by[2];
+  const double at_tip = highest / std::sqrt(identified.lines.JTJ(joint, joint));
+  if (!(highest > kFarAbove * by[1].first && at_tip > identified.constants.coulomb.value))
+    return "";
   return fmt::format(
       " Joint {} has far more friction than the others and than the tip. Check its cable, bearing "
       "and motor.",
@@ -220,12 +221,12 @@ std::vector<ConstantRow> constant_rows(const Identified& identified, const scene
   rows.add("delay, force to motion", found.delay, 1e3, "ms",
            names_delay ? named(delay) : std::nullopt);
   if (found.cables) add_cables(found, file, rows);
-  add_waves(identified, file, rows);
+  add_cogging(identified, file, rows);
   if (found.links) add_links(*found.links, file, rows);
   for (std::size_t i = 0; i < 3; ++i) {
     const Saturation& one = identified.saturation[i];
     if (one.seen) {
-      rows.add(fmt::format("most torque of motor {}", i + 1), one.most, 1,
+      rows.add(fmt::format("most torque of motor {}", i + 1), one.max_torque, 1,
                "N m at the joint, by the arm file's constants");
     }
   }
@@ -243,9 +244,9 @@ std::vector<ConstantRow> constant_rows(const Identified& identified, const scene
 }
 
 std::string fit_text(const Identified& identified) {
-  const PerMass& fit = identified.bare;
-  if (identified.play.understood()) {
-    const PlayFit& play = identified.play;
+  const MassNormalisedFit& fit = identified.bare;
+  if (identified.play.fits_to_steps()) {
+    const BacklashResult& play = identified.play;
     const char* what = play.seen && play.friction.seen ? " with backlash and friction of the motors"
                        : play.seen                     ? " with backlash"
                        : play.friction.seen            ? " with friction of the motors"
@@ -254,8 +255,9 @@ std::string fit_text(const Identified& identified) {
         "Fitted{} to {} segments of motion; the residual of the angles is {:.2f} times the noise "
         "of the encoder steps",
         what, fit.windows, std::sqrt(play.best().misfit));
-    if (play.told()) text += fmt::format(" ({:.1f} times without)", std::sqrt(play.plain.misfit));
-    return text + "." + rubs_most_text(identified);
+    if (play.is_reported())
+      text += fmt::format(" ({:.1f} times without)", std::sqrt(play.plain.misfit));
+    return text + "." + high_friction_text(identified);
   }
   return fmt::format(
       "Fitted to {} segments of motion ({} omitted because an axis was at rest). The fit explains "
@@ -271,9 +273,10 @@ std::string constants_table(const Identified& identified, const scene::ArmFile& 
   }
   text += fit_text(identified) + "\n";
   if (identified.constants.absolute) text += "Mass and forces were measured with the known mass.\n";
-  if (identified.constants.links) text += place_table(*identified.over.fit, file);
+  if (identified.constants.links) text += pose_table(*identified.over.fit, file);
   text += "Not identified:\n";
-  for (const std::string& sentence : not_identified(identified)) text += "  " + sentence + "\n";
+  for (const std::string& sentence : unidentified_parameters(identified))
+    text += "  " + sentence + "\n";
   return text;
 }
 

@@ -8,14 +8,14 @@ namespace thimble::bringup {
 namespace {
 
 // Min. number of differences of one size; fewer may be misread counts
-constexpr int kSeenLeast = 3;
-constexpr std::size_t kReportsLeast = 100;
+constexpr int kSeenMin = 3;
+constexpr std::size_t kReportsMin = 100;
 // If none of n reports changes, the probability of a change is below 3/n in 19 of 20 rests: the
 // rule of three [M Hanley and Lippman-Hand 1983].
 constexpr double kRuleOfThree = 3;
 // Allowed difference between the two halves of a rest in counts. A multiple of the standard error
 // of their noise, and a constant part [chosen: half a step is the effect of rounding].
-constexpr double kDriftMost = 4, kDriftFree = 0.5;
+constexpr double kDriftMax = 4, kDriftFree = 0.5;
 
 EncoderStep step_of(const ArmMotion& motion, Eigen::Index joint) {
   std::map<int, int> differences;  // number of differences, by size
@@ -29,7 +29,7 @@ EncoderStep step_of(const ArmMotion& motion, Eigen::Index joint) {
     before = &sample;
   }
   for (const auto& [counts, seen] : differences) {
-    if (counts > 0 && seen >= kSeenLeast) return {.counts = counts, .seen = seen};
+    if (counts > 0 && seen >= kSeenMin) return {.counts = counts, .seen = seen};
   }
   return {};
 }
@@ -43,7 +43,7 @@ std::array<EncoderStep, 3> encoder_steps(const ArmMotion& motion) {
 EncoderRest noise_at_rest(const std::vector<std::array<std::int32_t, 3>>& counts) {
   EncoderRest rest;
   rest.reports = counts.size();
-  if (counts.size() < kReportsLeast) return rest;
+  if (counts.size() < kReportsMin) return rest;
   const auto n = static_cast<double>(counts.size() - 1);
   for (std::size_t joint = 0; joint < 3; ++joint) {
     double second = 0, fourth = 0, halves = 0;
@@ -63,7 +63,7 @@ EncoderRest noise_at_rest(const std::vector<std::array<std::int32_t, 3>>& counts
     noise.plus_minus =
         second > 0 ? kNormal95 * spread / (4 * noise.value) : std::sqrt(kRuleOfThree / n / 2);
     const double error = noise.value * std::sqrt(4 / n);
-    rest.at_rest[joint] = std::abs(halves) <= kDriftFree + kDriftMost * error;
+    rest.at_rest[joint] = std::abs(halves) <= kDriftFree + kDriftMax * error;
   }
   return rest;
 }

@@ -42,9 +42,9 @@ Eigen::Vector3d Excitation::force(double time, double dt, const Eigen::Vector3d&
     }
   }
   if (with_lines_) f += share * allowed_ * lines_.force(time);
-  const double length = f.norm(), most = force_most();
-  if (!(length > most)) return f;
-  return f * (most / length);
+  const double length = f.norm(), limit = max_force();
+  if (!(length > limit)) return f;
+  return f * (limit / length);
 }
 
 }  // namespace thimble::bringup

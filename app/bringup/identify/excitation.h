@@ -11,12 +11,12 @@ namespace thimble::bringup {
 
 /// A force that moves a free arm in all directions at once, so that mass, friction and gains show
 /// in its motion. It consists of sines of many frequencies per axis, and a weak spring and damper
-/// that keep the tip near its start. At most `kShareMost` of the allowed force. Frame W: world.
+/// that keep the tip near its start. At most `kShareMax` of the allowed force. Frame W: world.
 class Excitation {
  public:
-  static constexpr double kShareMost = 0.95;  ///< Share of the allowed force.
-  static constexpr double kFar = 0.04;        ///< Max. distance of the tip from the middle, m.
-  static constexpr int kSines = 8;            ///< Number per axis.
+  static constexpr double kShareMax = 0.95;  ///< Share of the allowed force.
+  static constexpr double kFar = 0.04;       ///< Max. distance of the tip from the middle, m.
+  static constexpr int kSines = 8;           ///< Number per axis.
   /// Whether LineForces are added, which show the arm's response at high frequencies.
   enum class Lines { kWithout, kWith };
 
@@ -32,7 +32,7 @@ class Excitation {
                         const Eigen::Vector3d& v_WT) noexcept;
 
   /// Returns the max. force, N.
-  double force_most() const noexcept { return kShareMost * allowed_; }
+  double max_force() const noexcept { return kShareMax * allowed_; }
 
   /// Returns whether a tip is inside of its allowed space. Real-time: safe.
   bool near(const Eigen::Vector3d& p_WT) const noexcept {

@@ -12,7 +12,7 @@ namespace {
 // Information required to accept a difference, and its min. share of the friction, below which it
 // is an effect of smoothing [chosen: no even hidden arm of identify_test is reported as uneven].
 constexpr double kBetter = 10;
-constexpr double kShareLeast = 0.03;
+constexpr double kShareMin = 0.03;
 
 Estimate force_of(double per_mass, double variance, const Estimate& mass) {
   return {mass.value * per_mass,
@@ -24,14 +24,14 @@ Estimate force_of(double per_mass, double variance, const Estimate& mass) {
 FrictionDirections friction_directions(const FittedMotion& motion, const Estimate& mass) {
   FrictionDirections found;
   const auto& equations = motion.equations.equations();
-  const double coulomb = motion.fit.theta[PerMass::kCoulomb];
+  const double coulomb = motion.fit.theta[MassNormalisedFit::kCoulomb];
   // Each axis has its own friction instead of the common one.
   Eigen::MatrixXd rows = motion.residual.rows;
-  rows.col(PerMass::kCoulomb).setZero();
+  rows.col(MassNormalisedFit::kCoulomb).setZero();
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(rows.rows(), 3);
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     own(i, equations[static_cast<std::size_t>(i)].axis) =
-        motion.residual.rows(i, PerMass::kCoulomb);
+        motion.residual.rows(i, MassNormalisedFit::kCoulomb);
   }
   const FurtherColumns axes =
       fit_further(rows, motion.residual.rest, own, motion.residual.clusters);
@@ -46,21 +46,23 @@ FrictionDirections friction_directions(const FittedMotion& motion, const Estimat
   const Eigen::Vector2d differ = apart * axes.factor;
   const Eigen::Matrix2d spread = apart * axes.covariance * apart.transpose();
   found.axes_differ = differ.dot(spread.ldlt().solve(differ)) - 2 * logarithm > kBetter &&
-                      axes.factor.maxCoeff() - axes.factor.minCoeff() > kShareLeast * coulomb;
+                      axes.factor.maxCoeff() - axes.factor.minCoeff() > kShareMin * coulomb;
 
   found.down_B = motion.motion().down_B;
   const Eigen::Matrix3d level =
       Eigen::Matrix3d::Identity() - found.down_B * found.down_B.transpose();
-  const Eigen::Vector3d uneven = level * motion.fit.theta.segment<3>(PerMass::kWeight);
+  const Eigen::Vector3d uneven = level * motion.fit.theta.segment<3>(MassNormalisedFit::kWeight);
   const Eigen::Matrix3d covariance =
-      level * motion.fit.covariance.block<3, 3>(PerMass::kWeight, PerMass::kWeight) * level;
+      level *
+      motion.fit.covariance.block<3, 3>(MassNormalisedFit::kWeight, MassNormalisedFit::kWeight) *
+      level;
   for (int i = 0; i < 3; ++i) {
     found.uneven[static_cast<std::size_t>(i)] = force_of(uneven[i], covariance(i, i), mass);
   }
   // Two of three directions have information; the third has none.
   const Eigen::Matrix3d filled = covariance + found.down_B * found.down_B.transpose();
   found.directions_differ = uneven.dot(filled.ldlt().solve(uneven)) - 2 * logarithm > kBetter &&
-                            uneven.norm() > kShareLeast * coulomb;
+                            uneven.norm() > kShareMin * coulomb;
   return found;
 }
 

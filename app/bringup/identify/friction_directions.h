@@ -23,7 +23,7 @@ struct FrictionDirections {
 
   /// Returns whether a difference between the directions of an axis can be distinguished from the
   /// weight.
-  bool tells(int axis) const { return std::abs(down_B[axis]) < 0.5; }
+  bool is_observable(int axis) const { return std::abs(down_B[axis]) < 0.5; }
 };
 
 /// Searches for friction that differs between axes and directions, and accepts it by the Bayesian

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bringup/identify/cables/backlash/gap_constants.h"
+#include "bringup/identify/cables/backlash/backlash_constants.h"
 #include "bringup/identify/cables/behind_cables.h"
+#include "bringup/identify/joint_friction_fit.h"
 #include "bringup/identify/line_forces.h"
 #include "bringup/identify/link_inertia/link_constants.h"
 #include "bringup/identify/link_inertia/link_equations.h"
 #include "bringup/identify/record_motion.h"
-#include "bringup/identify/rubbing_joints.h"
 #include "math/elementary.h"
 
 namespace thimble::bringup {
@@ -28,12 +28,12 @@ constexpr double kMethodDelay = 2e-6;      // s
 constexpr double kPlaceLead = 0.5;         // s, motion about a pose before it is recorded
 // Max. half-width of an interval over the value, of mass and gains; less precise constants are not
 // written.
-constexpr double kUnknownMost = 0.03;
+constexpr double kUnknownMax = 0.03;
 // Max. share of the squared residual with waves or joints removed, if the fit stays bad [chosen as
 // for saturation.cpp].
-constexpr double kFreedLeft = 0.3;
+constexpr double kCleanedLeft = 0.3;
 // Gain of the Bayesian information criterion required to name cables as the cause.
-constexpr double kCablesBlamed = 20;
+constexpr double kCablesBetter = 20;
 
 void widen(ArmConstants& constants) {
   widen(constants.mass, kMethodMass * constants.mass.value);
@@ -46,14 +46,15 @@ void widen(ArmConstants& constants) {
 /// Lists the constants whose intervals are too wide to be written.
 void look_at_intervals(Identified& found) {
   const ArmConstants& constants = found.constants;
-  double most = constants.mass.plus_minus / constants.mass.value;
-  for (const Estimate& gain : constants.gain) most = std::max(most, gain.plus_minus / gain.value);
+  double widest = constants.mass.plus_minus / constants.mass.value;
+  for (const Estimate& gain : constants.gain)
+    widest = std::max(widest, gain.plus_minus / gain.value);
   // Written so that NaN is too wide.
-  if (most < kUnknownMost) return;
+  if (widest < kUnknownMax) return;
   found.against.push_back(fmt::format(
       "The tip moved too little compared with its dry friction; masses and forces are known only "
       "to {:.0f} %. Record for longer (--seconds), or use a heavier known mass.",
-      100 * most));
+      100 * widest));
 }
 
 /// Adds the result of motion over the workspace for the tip without its links: `bare` then has
@@ -80,13 +81,13 @@ void put_links(Identified& found, const Eigen::Vector3d& down_B) {
 
 /// Replaces a motion, its fit and its lines by a cleaned motion if the removed effect made the fit
 /// worse. `left`: the remaining share of the squared residual. Returns whether it did.
-bool take_freed(const ArmMotion& freed, const PerMass& better, double left, ArmMotion& motion,
-                PerMass& fit, Identified& found) {
-  const LineSpectrum spectrum = line_spectrum(freed);
-  const CableFit lines = fit_cables(spectrum, better, freed.dt);
-  const bool good = speaks_against(better, better, 1).empty();
-  if (lines.stretches || !(good || left < kFreedLeft)) return false;
-  motion = freed;
+bool accept_cleaned(const ArmMotion& cleaned, const MassNormalisedFit& better, double left,
+                    ArmMotion& motion, MassNormalisedFit& fit, Identified& found) {
+  const LineSpectrum spectrum = line_spectrum(cleaned);
+  const CableFit lines = fit_cables(spectrum, better, cleaned.dt);
+  const bool good = fit_warnings(better, better, 1).empty();
+  if (lines.stretches || !(good || left < kCleanedLeft)) return false;
+  motion = cleaned;
   fit = better;
   found.spectrum = spectrum;
   found.lines = lines;
@@ -95,8 +96,8 @@ bool take_freed(const ArmMotion& freed, const PerMass& better, double left, ArmM
 
 /// Searches for cogging and ripple of the motors in the motion of a rigid arm with its bare tip.
 /// Removes them from the motion if they made its fit worse, and computes fit and lines again.
-driver::Result<void> look_for_waves(const scene::ArmFile& file, ArmMotion& motion, PerMass& fit,
-                                    Identified& found) {
+driver::Result<void> look_for_cogging(const scene::ArmFile& file, ArmMotion& motion,
+                                      MassNormalisedFit& fit, Identified& found) {
   if (found.lines.stretches) {
     found.waves.not_done = "not searched because the cables stretch.";
     return {};
@@ -107,16 +108,16 @@ driver::Result<void> look_for_waves(const scene::ArmFile& file, ArmMotion& motio
   for (std::size_t i = 0; i < 3; ++i) {
     ratio[static_cast<Eigen::Index>(i)] = file.model.drives[i].ratio;
   }
-  auto waves = find_waves(motion, *held, ratio, file.simulated.drive_train.periods_per_turn);
+  auto waves = find_cogging(motion, *held, ratio, file.simulated.drive_train.periods_per_turn);
   if (!waves) return waves.error();
   if (!waves->seen()) {
     found.waves = std::move(waves).value();
     return {};
   }
-  const ArmMotion freed = freed_of_waves(motion, *waves);
-  const auto better = fit_motion(freed, false);
+  const ArmMotion cleaned = without_cogging(motion, *waves);
+  const auto better = fit_motion(cleaned, false);
   if (!better) return better.error();
-  if (!take_freed(freed, *better, waves->left, motion, fit, found)) {
+  if (!accept_cleaned(cleaned, *better, waves->left, motion, fit, found)) {
     found.waves.not_done = "not reported because another effect spoils the fit and looks similar.";
     return {};
   }
@@ -126,20 +127,21 @@ driver::Result<void> look_for_waves(const scene::ArmFile& file, ArmMotion& motio
 
 /// Searches for friction of the joints of a rigid arm in its motion with the bare tip. Removes it
 /// from the motion if it made the fit worse, and computes fit and lines again.
-driver::Result<void> look_for_rubbing(ArmMotion& motion, PerMass& fit, Identified& found) {
+driver::Result<void> look_for_joint_friction(ArmMotion& motion, MassNormalisedFit& fit,
+                                             Identified& found) {
   if (found.lines.stretches) return {};
-  auto rubbing = find_rubbing_joints(motion, fit);
+  auto rubbing = fit_joint_friction(motion, fit);
   if (!rubbing) return rubbing.error();
   found.rubbing = std::move(rubbing).value();
   if (!found.rubbing.seen) return {};
-  const ArmMotion freed = freed_of_rubbing(motion, found.rubbing, fit);
-  const auto better = fit_motion(freed, false), held = fit_motion(freed, true);
+  const ArmMotion cleaned = without_joint_friction(motion, found.rubbing, fit);
+  const auto better = fit_motion(cleaned, false), held = fit_motion(cleaned, true);
   if (!better) return better.error();
   if (!held) return held.error();
   const auto mass = arm_constants(*better, motion.down_B, {}, 0);
   // A hand looks similar to joints that stick.
   const bool is_held_then = !mass || is_held(*held, mass->mass.value);
-  if (is_held_then || !take_freed(freed, *better, found.rubbing.left, motion, fit, found)) {
+  if (is_held_then || !accept_cleaned(cleaned, *better, found.rubbing.left, motion, fit, found)) {
     found.rubbing = {};
   }
   return {};
@@ -147,19 +149,19 @@ driver::Result<void> look_for_rubbing(ArmMotion& motion, PerMass& fit, Identifie
 
 /// Removes the effects of motors and joints found for the same arm from the motion with the known
 /// mass.
-driver::Result<void> free_loaded(ArmMotion& motion, const Identified& found) {
-  motion = freed_of_waves(motion, found.waves);
+driver::Result<void> remove_known_effects(ArmMotion& motion, const Identified& found) {
+  motion = without_cogging(motion, found.waves);
   if (!found.rubbing.seen) return {};
   const auto fit = fit_motion(motion, false);
   if (!fit) return fit.error();
-  motion = freed_of_rubbing(motion, found.rubbing, *fit);
+  motion = without_joint_friction(motion, found.rubbing, *fit);
   return {};
 }
 
 /// Sets the friction at the tip to the one found in addition to that of joints; none if none was
 /// needed.
-void put_rubbing(Identified& found) {
-  const RubbingJoints& rubbing = found.rubbing;
+void put_joint_friction(Identified& found) {
+  const JointFrictionFit& rubbing = found.rubbing;
   if (!rubbing.seen) return;
   const Estimate mass = found.moved_mass();
   const auto put = [&](Estimate& one, const Estimate& per_mass) {
@@ -174,7 +176,7 @@ void put_rubbing(Identified& found) {
 
 /// Measures properties independent of the motion: timing of reports, and the firmware's watchdog.
 void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstants& bare,
-                  double force_most, const std::atomic<bool>& stop, Identified& found) {
+                  double max_force, const std::atomic<bool>& stop, Identified& found) {
   constexpr double kListened = 2, kRested = 1;  // s
   bench.watch({});
   found.reports = time_reports(bench, kListened, stop);
@@ -205,11 +207,11 @@ void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstant
                                   .coulomb = (bare.coulomb.value + rubs) / share,
                                   .delay = bare.delay.value,
                                   .workspace = file.workspace,
-                                  .force_most = force_most},
+                                  .max_force = max_force},
                                  file.limits.soft_start, stop);
 }
 
-void say_sticks(Identified& found, int joint, const Estimate& coulomb) {
+void report_stiction(Identified& found, int joint, const Estimate& coulomb) {
   found.against.insert(
       found.against.begin(),
       fmt::format("Joint {} sticks: it has {:.2g} +- {:.1g} N m of dry friction in addition to "
@@ -222,7 +224,7 @@ void say_sticks(Identified& found, int joint, const Estimate& coulomb) {
 void look_closer(Identified& found, bool held) {
   // The position of the links in their backlash is unknown, and behind motors with friction it is
   // only approximate.
-  if (found.play.told()) return;
+  if (found.play.is_reported()) return;
   const FittedMotion motion = found.fitted();
   const Estimate mass = found.moved_mass();
   found.friction = friction_directions(motion, mass);
@@ -230,12 +232,14 @@ void look_closer(Identified& found, bool held) {
     const Eigen::Matrix3d& G = found.moved.samples.back().G;
     const int stuck =
         found.rubbing.stuck(found.constants.coulomb.value, G.rowwise().norm().cwiseInverse());
-    if (stuck >= 0) say_sticks(found, stuck, found.joint_coulomb(static_cast<std::size_t>(stuck)));
+    if (stuck >= 0)
+      report_stiction(found, stuck, found.joint_coulomb(static_cast<std::size_t>(stuck)));
   } else if (!found.against.empty() && !held) {
-    const RubbingJoints left = rubbing_left(motion);
-    const auto most = static_cast<std::size_t>(left.most());
+    const JointFrictionFit left = joint_friction_left(motion);
+    const auto joint = static_cast<std::size_t>(left.strongest_joint());
     if (left.seen) {
-      say_sticks(found, left.most(), by_gain(left.coulomb[most], found.constants.gain[most]));
+      report_stiction(found, left.strongest_joint(),
+                      by_gain(left.coulomb[joint], found.constants.gain[joint]));
     }
   }
   if (found.lines.stretches) return;
@@ -248,11 +252,11 @@ void look_closer(Identified& found, bool held) {
         fmt::format(
             "Motor {} gives at most {:.3g} +- {:.1g} N m at the joint, but up to {:.3g} N m was "
             "requested. Its amplifier saturates, or current_max in the arm file is too high.",
-            i + 1, one.most.value, one.most.plus_minus, one.asked));
+            i + 1, one.max_torque.value, one.max_torque.plus_minus, one.asked));
   }
 }
 
-std::string like_play_text(const PlayFit& play) {
+std::string like_play_text(const BacklashResult& play) {
   return fmt::format(
       "The motors move as if the cables had backlash, but a model with backlash does not fit "
       "either (chi^2 {:.1f} per degree of freedom, {:.0f} without). Possible causes: friction that "
@@ -275,7 +279,7 @@ class LateCounter {
 
 /// Returns an error if an arm cannot be identified with these options.
 driver::Result<void> check_asked(const scene::ArmFile& file, const IdentifyOptions& options) {
-  if (file.is<driver::ToldArm>()) {
+  if (file.is<driver::VendorPoseArm>()) {
     return driver::Error{
         "Only arms whose joint motors are controlled by current can be identified (PHANTOM, "
         "WoodenHaptics, Polhem, Falcon). Vendor-driven arms do not report their currents."};
@@ -309,8 +313,8 @@ class Identification {
   struct Motion {
     ArmMotion recorded;
     ArmMotion links;
-    PerMass fit;
-    std::optional<PerMass> held;  ///< Fit with a hand on the tip.
+    MassNormalisedFit fit;
+    std::optional<MassNormalisedFit> held;  ///< Fit with a hand on the tip.
   };
 
   driver::Result<void> move(bool loaded) {
@@ -325,13 +329,13 @@ class Identification {
     if (auto done = loaded ? take_links_of_loaded(motion) : look_over(**bench, motion); !done) {
       return done;
     }
-    if (auto done = free_of_links(motion); !done) return done;
+    if (auto done = remove_links(motion); !done) return done;
     keep(loaded, motion);
     const auto alone = arm_constants(motion.fit, down_B_, {}, 0);
     if (!alone) return alone.error();
     judge(loaded, motion, *alone);
     if (loaded) return {};
-    if (options_.link) look_at_link(**bench, file_, *alone, options_.force_most, stop_, found_);
+    if (options_.link) look_at_link(**bench, file_, *alone, options_.max_force, stop_, found_);
     read_late_ = (*bench)->read_late();
     return {};
   }
@@ -341,7 +345,7 @@ class Identification {
                                   {.seconds = options_.seconds,
                                    .lead = options_.lead,
                                    .added_mass = loaded ? options_.known_mass : 0,
-                                   .force_most = options_.force_most,
+                                   .max_force = options_.max_force,
                                    .seed = options_.seed + (loaded ? 1 : 0),
                                    .share = share_},
                                   stop_);
@@ -359,19 +363,21 @@ class Identification {
     found_.encoders.step = encoder_steps(motion.recorded);
     found_.spectrum = line_spectrum(motion.recorded);
     found_.lines = fit_cables(found_.spectrum, motion.fit, motion.recorded.dt);
-    if (auto done = look_for_waves(file_, motion.recorded, motion.fit, found_); !done) return done;
+    if (auto done = look_for_cogging(file_, motion.recorded, motion.fit, found_); !done)
+      return done;
     if (options_.play) {
-      if (auto done = look_for_rubbing(motion.recorded, motion.fit, found_); !done) return done;
+      if (auto done = look_for_joint_friction(motion.recorded, motion.fit, found_); !done)
+        return done;
     }
     if (options_.cables) return {};
-    cables_blamed_ = found_.lines.better;
+    cables_better_ = found_.lines.better;
     found_.lines = {};
     return {};
   }
 
   driver::Result<void> clean_loaded(Motion& motion) {
     // All torques come through the same motors.
-    if (auto done = free_loaded(motion.recorded, found_); !done) return done;
+    if (auto done = remove_known_effects(motion.recorded, found_); !done) return done;
     auto fit = fit_motion(motion.recorded, false);
     if (!fit) return fit.error();
     motion.fit = *fit;
@@ -382,10 +388,10 @@ class Identification {
   driver::Result<void> look_behind_cables(bool loaded, Motion& motion) {
     motion.links = motion.recorded;
     if (!loaded && options_.play && found_.lines.stretches) {
-      found_.play = find_play(motion.recorded, motion.fit, found_.lines);
-      if (found_.play.like_play) found_.against.push_back(like_play_text(found_.play));
+      found_.play = find_backlash(motion.recorded, motion.fit, found_.lines);
+      if (found_.play.looks_like_backlash) found_.against.push_back(like_play_text(found_.play));
     }
-    if (found_.play.understood()) {
+    if (found_.play.fits_to_steps()) {
       if (auto done = take_play(loaded, motion); !done) return done;
     } else if (found_.lines.stretches) {
       // A mass on the tip changes neither motors nor cables.
@@ -401,18 +407,19 @@ class Identification {
   }
 
   driver::Result<void> take_play(bool loaded, Motion& motion) {
-    const GapFit gap = loaded ? fit_play_again(motion.recorded, motion.fit, rigid_, found_.play)
-                              : found_.play.best();
+    const BacklashFit backlash =
+        loaded ? fit_backlash_again(motion.recorded, motion.fit, rigid_, found_.play)
+               : found_.play.best();
     rigid_ = motion.fit;
     if (!loaded) {
-      found_.lines.elastic = two_mass_of(gap, found_.lines.elastic);
-      found_.lines.rotor_viscous = gap.theta.segment<3>(GapTheta::kRotorViscous);
-      found_.lines.rotor_coulomb = gap.theta.segment<3>(GapTheta::kRotorCoulomb);
+      found_.lines.elastic = two_mass_of(backlash, found_.lines.elastic);
+      found_.lines.rotor_viscous = backlash.theta.segment<3>(BacklashTheta::kRotorViscous);
+      found_.lines.rotor_coulomb = backlash.theta.segment<3>(BacklashTheta::kRotorCoulomb);
     }
     auto behind = motion_of_links(motion.recorded, found_.lines, file_);
     if (!behind) return behind.error();
     motion.links = std::move(behind).value();
-    motion.fit = per_mass_of(gap, motion.recorded);
+    motion.fit = mass_normalised_fit_of(backlash, motion.recorded);
     motion.held = motion.fit;
     return {};
   }
@@ -420,16 +427,17 @@ class Identification {
   /// Moves the bare tip about other poses of the workspace, which separates the links' effects.
   driver::Result<void> look_over(BenchArm& bench, const Motion& motion) {
     const auto mass = arm_constants(motion.fit, down_B_, {}, 0);
-    auto over = look_over_places(
+    auto over = sweep_workspace(
         bench, file_,
         {.seconds = options_.place_seconds,
          .lead = kPlaceLead,
-         .force_most = options_.force_most,
+         .max_force = options_.max_force,
          .seed = options_.seed + 2,
          .share = share_},
         options_.places, motion.links,
         [&](const ArmMotion& other) {
-          return freed_of_rubbing(freed_of_waves(other, found_.waves), found_.rubbing, motion.fit);
+          return without_joint_friction(without_cogging(other, found_.waves), found_.rubbing,
+                                        motion.fit);
         },
         found_.lines.stretches, mass.ok() && is_held(*motion.held, mass->mass.value), stop_);
     if (!over) return over.error();
@@ -443,9 +451,9 @@ class Identification {
   }
 
   /// Removes the links from the motion, if they were identified: the remainder is the tip's.
-  driver::Result<void> free_of_links(Motion& motion) {
+  driver::Result<void> remove_links(Motion& motion) {
     if (!found_.over.links()) return {};
-    motion.links = freed_of_links(motion.links, *found_.over.fit);
+    motion.links = without_link_inertia(motion.links, *found_.over.fit);
     auto fit = fit_motion(motion.links, false);
     if (!fit) return fit.error();
     motion.fit = *fit;
@@ -464,7 +472,7 @@ class Identification {
     found_.moved = motion.links;
     if (found_.lines.stretches) {
       found_.moved_ahead =
-          found_.lines.elastic.theta[TwoMass::kDelay] - kHeldBack * motion.recorded.dt;
+          found_.lines.elastic.theta[TwoMass::kDelay] - kDelayTicks * motion.recorded.dt;
     }
   }
 
@@ -472,15 +480,15 @@ class Identification {
   void judge(bool loaded, const Motion& motion, const ArmConstants& alone) {
     held_tip_ = held_tip_ || is_held(*motion.held, alone.mass.value);
     for (std::string& sentence :
-         speaks_against(motion.fit, *motion.held, alone.mass.value, found_.lines.stretches)) {
+         fit_warnings(motion.fit, *motion.held, alone.mass.value, found_.lines.stretches)) {
       found_.against.push_back((loaded ? "With the known mass: " : "") + sentence);
     }
-    if (loaded || !(cables_blamed_ > kCablesBlamed)) return;
+    if (loaded || !(cables_better_ > kCablesBetter)) return;
     found_.against.push_back(
         fmt::format("Above {:g} Hz the arm does not move like a rigid arm; a model with a mass "
                     "behind each cable fits better (Bayesian information criterion lower by "
                     "{:.0f}). Its cables stretch, but cables were not searched.",
-                    LineForces::kLowest, cables_blamed_));
+                    LineForces::kLowest, cables_better_));
   }
 
   /// Computes the constants from both motions, and the reasons to distrust them.
@@ -488,13 +496,13 @@ class Identification {
     auto constants = arm_constants(found_.bare, down_B_, found_.loaded, options_.known_mass);
     if (!constants) return constants.error();
     found_.constants = *constants;
-    constexpr double kMisfitMost = 50;
+    constexpr double kMisfitMax = 50;
     if (found_.loaded && found_.lines.stretches) {
       const auto apart = arm_constants(with_method(found_.bare), down_B_,
                                        with_method(*found_.loaded), options_.known_mass);
       found_.constants.misfit = apart ? apart->misfit : HUGE_VAL;
     }
-    if (found_.constants.misfit > kMisfitMost) {
+    if (found_.constants.misfit > kMisfitMax) {
       found_.against.push_back(fmt::format(
           "The two motions do not fit one arm with an added mass of {:g} kg (chi^2 {:.0f} per "
           "degree of freedom). Weigh the mass, and fix it so that it does not swing.",
@@ -505,7 +513,7 @@ class Identification {
     // Reports waited for their tick; the delay of the arm is the mean without that wait.
     found_.constants.delay.value -= read_late_;
     widen(found_.constants);
-    put_rubbing(found_);
+    put_joint_friction(found_);
     if (found_.lines.stretches) put_cables(found_);
     look_at_intervals(found_);
     look_closer(found_, held_tip_);
@@ -521,8 +529,8 @@ class Identification {
   Identified found_;
   Eigen::Vector3d down_B_{0, 0, -1}, share_{1, 1, 1};
   bool held_tip_ = false;
-  PerMass rigid_;             // fit of the motion with the bare tip
-  double cables_blamed_ = 0;  // gain by cables that were not requested
+  MassNormalisedFit rigid_;   // fit of the motion with the bare tip
+  double cables_better_ = 0;  // gain by cables that were not requested
   double read_late_ = 0;      // s
 };
 

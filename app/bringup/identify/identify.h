@@ -7,13 +7,13 @@
 
 #include "bringup/bench_arm.h"
 #include "bringup/identify/arm_constants.h"
-#include "bringup/identify/cables/backlash/find_play.h"
+#include "bringup/identify/cables/backlash/find_backlash.h"
 #include "bringup/identify/cables/cables.h"
-#include "bringup/identify/cogging/motor_waves.h"
+#include "bringup/identify/cogging/motor_cogging.h"
 #include "bringup/identify/encoders.h"
 #include "bringup/identify/friction_directions.h"
-#include "bringup/identify/link_inertia/look_over_places.h"
-#include "bringup/identify/rubbing_joints.h"
+#include "bringup/identify/joint_friction_fit.h"
+#include "bringup/identify/link_inertia/sweep_workspace.h"
 #include "bringup/identify/saturation.h"
 #include "bringup/identify/weak_form/fitted_motion.h"
 #include "bringup/loop_priority.h"
@@ -37,7 +37,7 @@ struct IdentifyOptions {
   /// motors, else friction only. If not, an arm that has some gives a bad fit.
   bool play = true;
   double known_mass = 0;  ///< Mass fixed to the tip for the second motion, kg; 0: none.
-  double force_most = kIdentifyForceMax;  ///< Max. requested force, N; at most the file's.
+  double max_force = kIdentifyForceMax;  ///< Max. requested force, N; at most the file's.
   /// Whether the reports' timing and the firmware's watchdog are measured after the motion; the
   /// watchdog by pushes slightly above the friction that was found.
   bool link = false;
@@ -53,23 +53,24 @@ struct IdentifyOptions {
 /// Result of an identification, and reasons to distrust it.
 struct Identified {
   ArmConstants constants;
-  PerMass bare;                   ///< Fit of the motion without the known mass.
-  std::optional<PerMass> loaded;  ///< Fit of the motion with the known mass, if there was one.
-  CableFit lines;                 ///< Result of the lines of the motion without it about cables.
-  LineSpectrum spectrum;          ///< The lines themselves.
+  MassNormalisedFit bare;  ///< Fit of the motion without the known mass.
+  std::optional<MassNormalisedFit>
+      loaded;             ///< Fit of the motion with the known mass, if there was one.
+  CableFit lines;         ///< Result of the lines of the motion without it about cables.
+  LineSpectrum spectrum;  ///< The lines themselves.
   /// Backlash of elastic cables and friction of their motors. If some is seen, `lines` and `bare`
   /// come from this fit.
-  PlayFit play;
+  BacklashResult play;
   /// Cogging and ripple of the motors, removed from all motions here.
-  MotorWaves waves;
+  MotorCogging waves;
   /// Friction of the joints of a rigid arm, also removed from all motions here.
-  RubbingJoints rubbing;
+  JointFrictionFit rubbing;
   /// The motion without the known mass, which `bare` fits; with elastic cables, that of the links.
   ArmMotion moved;
   double moved_ahead = 0;  ///< Part of the delay already removed from that motion, s.
   /// Links found from motion over the workspace. If some are seen, `moved` contains them, so that
   /// `bare` fits the tip without links, and `constants` come from this fit.
-  OverPlaces over;
+  WorkspaceSweep over;
   FrictionDirections friction;
   Encoders encoders;  ///< At rest only if the reports' timing was requested.
   /// Joint by joint; not searched for behind elastic cables.
@@ -96,20 +97,20 @@ struct Identified {
 
   /// Returns the motion with the residual of its fit. It must not outlive this object.
   FittedMotion fitted() const {
-    PerMass fit = bare;
+    MassNormalisedFit fit = bare;
     fit.delay.value -= moved_ahead;
     return {moved, fit};
   }
 };
 
 /// Returns whether a spring to a point holds the tip, according to a fit with one.
-bool is_held(const PerMass& held, double mass);
+bool is_held(const MassNormalisedFit& held, double mass);
 
 /// Returns reasons to distrust fits, a sentence each: a hand or a spring at the tip, a motion that
 /// mass, friction and weight do not explain, missing frames. `held` is the fit of the same motion
 /// with a spring; `stretches`: the motion is that of links behind cables.
-std::vector<std::string> speaks_against(const PerMass& fit, const PerMass& held, double mass,
-                                        bool stretches = false);
+std::vector<std::string> fit_warnings(const MassNormalisedFit& fit, const MassNormalisedFit& held,
+                                      double mass, bool stretches = false);
 
 /// Returns the sentence about a motion in which many ticks were late. It replaces other reasons: a
 /// force that was held for longer looks like cables, backlash or a hand.
@@ -123,7 +124,7 @@ using OpenBench = std::function<driver::Result<std::unique_ptr<BenchArm>>(bool l
 driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOptions& options);
 
 /// Moves a free arm, with and without a known mass, and finds its constants. No force exceeds
-/// `force_most`, with which the bench was also opened; all forces pass the gate. The error explains
+/// `max_force`, with which the bench was also opened; all forces pass the gate. The error explains
 /// why there is no result. Real-time: never from the servo thread.
 driver::Result<Identified> identify(const OpenBench& open, const scene::ArmFile& file,
                                     const IdentifyOptions& options, const std::atomic<bool>& stop);

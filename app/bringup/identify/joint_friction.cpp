@@ -17,9 +17,10 @@ std::array<std::vector<FrictionPoint>, 3> joint_friction(const FittedMotion& mot
     for (int axis = 0; axis < 3; ++axis) {
       const auto& equation = equations[i + static_cast<std::size_t>(axis)];
       const auto row = static_cast<Eigen::Index>(i) + axis;
-      const double friction =
-          motion.residual.rows(row, PerMass::kViscous) * motion.fit.theta[PerMass::kViscous] +
-          motion.residual.rows(row, PerMass::kCoulomb) * motion.fit.theta[PerMass::kCoulomb];
+      const double friction = motion.residual.rows(row, MassNormalisedFit::kViscous) *
+                                  motion.fit.theta[MassNormalisedFit::kViscous] +
+                              motion.residual.rows(row, MassNormalisedFit::kCoulomb) *
+                                  motion.fit.theta[MassNormalisedFit::kCoulomb];
       fitted[equation.axis] = -mass * friction;
       seen[equation.axis] = -mass * (friction + motion.residual.rest[row]);
     }

@@ -78,8 +78,8 @@ LineSpectrum line_spectrum(const ArmMotion& motion) {
       found.lines.push_back(at(bin));
       // A window widens a line by one bin to either side; the next line is at least five bins away.
       for (std::size_t away = 2; away <= 5; ++away) {
-        found.beside.push_back(at(bin - away));
-        found.beside.push_back(at(bin + away));
+        found.noise_lines.push_back(at(bin - away));
+        found.noise_lines.push_back(at(bin + away));
       }
     }
   }

@@ -22,8 +22,8 @@ struct LineSpectrum {
   std::vector<SpectralLine> lines;
   /// Frequencies between the lines, kBeside for each line, in its order. Their motion, without the
   /// model's response to their own torques, is noise.
-  std::vector<SpectralLine> beside;
-  static constexpr std::size_t kBeside = 8;
+  std::vector<SpectralLine> noise_lines;
+  static constexpr std::size_t kNoiseLines = 8;
   Eigen::Matrix3d JTJ = Eigen::Matrix3d::Zero();  ///< Mean of J^T J over the motion, m^2.
 };
 

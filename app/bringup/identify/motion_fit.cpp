@@ -21,7 +21,7 @@ class Fit {
         with_inertia_(with_inertia),
         equations_(motion, with_inertia) {}
 
-  driver::Result<PerMass> run() {
+  driver::Result<MassNormalisedFit> run() {
     if (equations_.torn()) return MotionEquations::torn_error(equations_.motion());
     if (equations_.equations().size() < 300) {
       return driver::Error{
@@ -34,7 +34,7 @@ class Fit {
     for (int round = 0; round < 3; ++round) {
       Row theta;
       solve(best, theta);
-      equations_.find_signs(theta[PerMass::kCoulomb]);
+      equations_.find_signs(theta[MassNormalisedFit::kCoulomb]);
       best = refined_delay(best, 1e-6, [this](double delay) { return residual_at(delay); });
     }
     return at_delay(best);
@@ -44,7 +44,7 @@ class Fit {
   /// Best constants at a delay, and the sum of squared residuals. Uses every equation, or one in
   /// `stride`.
   double solve(double delay, Row& theta, std::size_t stride = 1) const {
-    Eigen::Matrix<double, PerMass::kCount + 1, PerMass::kCount + 1> normal;
+    Eigen::Matrix<double, MassNormalisedFit::kCount + 1, MassNormalisedFit::kCount + 1> normal;
     normal.setZero();
     Row right = Row::Zero();
     double square = 0;
@@ -54,21 +54,22 @@ class Fit {
       right += left_of(i) * one;
       square += left_of(i) * left_of(i);
     }
-    normal(PerMass::kCount, PerMass::kCount) = 1;
+    normal(MassNormalisedFit::kCount, MassNormalisedFit::kCount) = 1;
     leave_out(normal);
-    for (int k = 0; k < PerMass::kCount; ++k) right[k] = is_asked(k) ? right[k] : 0;
+    for (int k = 0; k < MassNormalisedFit::kCount; ++k) right[k] = is_asked(k) ? right[k] : 0;
     theta = normal.ldlt().solve(right);
     return square - theta.dot(right);
   }
 
   bool is_asked(int k) const {
-    return k < PerMass::kStiffness || k == PerMass::kCount ||
-           (k == PerMass::kStiffness ? with_stiffness_ : with_inertia_);
+    return k < MassNormalisedFit::kStiffness || k == MassNormalisedFit::kCount ||
+           (k == MassNormalisedFit::kStiffness ? with_stiffness_ : with_inertia_);
   }
 
   /// Makes the equations of constants that were not requested trivial.
-  void leave_out(Eigen::Matrix<double, PerMass::kCount + 1, PerMass::kCount + 1>& normal) const {
-    for (int k = 0; k < PerMass::kCount; ++k) {
+  void leave_out(Eigen::Matrix<double, MassNormalisedFit::kCount + 1,
+                               MassNormalisedFit::kCount + 1>& normal) const {
+    for (int k = 0; k < MassNormalisedFit::kCount; ++k) {
       if (is_asked(k)) continue;
       normal.row(k).setZero();
       normal.col(k).setZero();
@@ -81,17 +82,19 @@ class Fit {
     return solve(delay, theta, stride);
   }
 
-  PerMass at_delay(double delay) const {
-    PerMass found;
+  MassNormalisedFit at_delay(double delay) const {
+    MassNormalisedFit found;
     Row theta;
     solve(delay, theta);
-    found.theta = theta.head<PerMass::kCount>();
+    found.theta = theta.head<MassNormalisedFit::kCount>();
     found.delay.value = delay;
     const FitResidual residual = residual_of(equations_, found);
     const Eigen::MatrixXd covariance =
         clustered_covariance(residual.rows, residual.rest, residual.clusters);
-    found.covariance = covariance.topLeftCorner<PerMass::kCount, PerMass::kCount>();
-    found.delay.plus_minus = kNormal95 * std::sqrt(covariance(PerMass::kCount, PerMass::kCount));
+    found.covariance =
+        covariance.topLeftCorner<MassNormalisedFit::kCount, MassNormalisedFit::kCount>();
+    found.delay.plus_minus =
+        kNormal95 * std::sqrt(covariance(MassNormalisedFit::kCount, MassNormalisedFit::kCount));
     double square = 0;
     for (std::size_t i = 0; i < count(); ++i) square += left_of(i) * left_of(i);
     found.residual = std::sqrt(residual.rest.squaredNorm() / static_cast<double>(count()));
@@ -111,8 +114,8 @@ class Fit {
 
 }  // namespace
 
-driver::Result<PerMass> fit_motion(const ArmMotion& motion, bool with_stiffness,
-                                   bool with_inertia) {
+driver::Result<MassNormalisedFit> fit_motion(const ArmMotion& motion, bool with_stiffness,
+                                             bool with_inertia) {
   return Fit(motion, with_stiffness, with_inertia).run();
 }
 

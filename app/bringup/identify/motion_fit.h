@@ -16,7 +16,7 @@ namespace thimble::bringup {
 ///
 /// row i of G for joint i, j_i the inertia of a motor that is not included in its torque yet.
 /// Torques and mass scale together, so only the ratios are seen.
-struct PerMass {
+struct MassNormalisedFit {
   /// Index of each constant in `theta`.
   enum Index {
     kGain = 0,
@@ -44,7 +44,7 @@ struct PerMass {
 /// whatever their residuals' correlation. `with_stiffness`: a spring holds the tip (a hand).
 /// `with_inertia`: motors have an inertia, and the samples contain their accelerations. Fails if
 /// the motion is too short or has too few windows. Real-time: never from the servo thread.
-driver::Result<PerMass> fit_motion(const ArmMotion& motion, bool with_stiffness,
-                                   bool with_inertia = false);
+driver::Result<MassNormalisedFit> fit_motion(const ArmMotion& motion, bool with_stiffness,
+                                             bool with_inertia = false);
 
 }  // namespace thimble::bringup

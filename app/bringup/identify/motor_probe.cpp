@@ -15,12 +15,12 @@ constexpr double kWeakest = 0.05;  // N, of the first push
 constexpr double kPulse = 0.04;    // s, max. duration
 constexpr double kReach = 0.002;   // m, at which a push reverses [chosen: a twentieth of the space]
 constexpr double kStill = 0.02;    // s without a count, after which it is at rest
-constexpr double kRestMost = 2;    // s, after which it moves by itself [chosen]
+constexpr double kRestMax = 2;     // s, after which it moves by itself [chosen]
 constexpr double kNoticed = 3, kClear = 10;  // counts
 // Max. tip acceleration per requested N, 1/kg, for which HoldPlace is stable with a delay of 5 ms.
 // At the frequency sqrt(60 N/m times this) its phase lead, atan(0.0206 w) - atan(0.0106 w), equals
 // the phase lag of 5.5 ms.
-constexpr double kLivelyMost = 30;
+constexpr double kAccelerationMax = 30;
 
 /// Result of one push.
 struct Pushed {
@@ -30,19 +30,19 @@ struct Pushed {
 
 class Probe {
  public:
-  Probe(BenchArm& bench, const scene::ArmFile& file, double force_most,
+  Probe(BenchArm& bench, const scene::ArmFile& file, double max_force,
         const std::function<bool(const Eigen::Vector3d&)>& within, const std::atomic<bool>& stop)
-      : bench_(bench), file_(file), force_most_(force_most), within_(within), stop_(stop) {}
+      : bench_(bench), file_(file), max_force_(max_force), within_(within), stop_(stop) {}
 
   /// Returns the share of one motor, or the reason why there is none; an empty error if the run has
   /// ended.
   driver::Result<double> share_of(int joint) {
     Pushed before, now;
     double force = 0, force_before = 0;
-    while (force < force_most_) {
+    while (force < max_force_) {
       const bool moved = std::abs(now.counts) >= kClear;
       before = now, force_before = force;
-      force = std::min(force_most_, force > 0 ? 2 * force : kWeakest);
+      force = std::min(max_force_, force > 0 ? 2 * force : kWeakest);
       const auto pushed = push(joint, force);
       if (!pushed) return ended(joint, now.counts, force);
       now = *pushed;
@@ -59,15 +59,15 @@ class Probe {
     if (now.counts < kNoticed) return unmoved(joint, now.counts, force);
     // Dry friction reduces both equally.
     const double lively = (now.acceleration - before.acceleration) / (force - force_before);
-    return std::min(1.0, kLivelyMost / std::max(lively, 1e-9));
+    return std::min(1.0, kAccelerationMax / std::max(lively, 1e-9));
   }
 
  private:
-  /// Lets the tip come to rest after a push, for up to kRestMost: an arm whose friction hardly
+  /// Lets the tip come to rest after a push, for up to kRestMax: an arm whose friction hardly
   /// carries its weight slides for long. Returns whether the run continues.
   bool rest() {
     const auto nothing = [](const driver::DeviceState&) { return Eigen::Vector3d(0, 0, 0); };
-    for (double waited = 0; waited < kRestMost; waited += kStill) {
+    for (double waited = 0; waited < kRestMax; waited += kStill) {
       const Eigen::Vector3d before = bench_.device().state().q;
       if (!bench_.run(kStill, nothing, stop_)) return false;
       if (!within_(bench_.device().state().p_WT)) return false;
@@ -198,7 +198,7 @@ class Probe {
 
   BenchArm& bench_;
   const scene::ArmFile& file_;
-  double force_most_;  // N
+  double max_force_;  // N
   const std::function<bool(const Eigen::Vector3d&)>& within_;
   const std::atomic<bool>& stop_;
 };
@@ -206,9 +206,9 @@ class Probe {
 }  // namespace
 
 driver::Result<Eigen::Vector3d> probe_motors(
-    BenchArm& bench, const scene::ArmFile& file, double force_most,
+    BenchArm& bench, const scene::ArmFile& file, double max_force,
     const std::function<bool(const Eigen::Vector3d&)>& within, const std::atomic<bool>& stop) {
-  Probe probe(bench, file, force_most, within, stop);
+  Probe probe(bench, file, max_force, within, stop);
   Eigen::Vector3d shares(1, 1, 1);
   for (int joint = 0; joint < 3; ++joint) {
     const auto share = probe.share_of(joint);

@@ -43,7 +43,7 @@ class Recorder {
       : bench_(bench),
         file_(file),
         lead_(order.lead),
-        force_most_(order.force_most),
+        max_force_(order.max_force),
         share_(order.share),
         stop_(stop) {}
 
@@ -69,7 +69,7 @@ class Recorder {
       said += fmt::format(
           " If the encoders count when you move the tip, its friction is too high for the allowed "
           "{:g} N (--force-most).",
-          force_most_);
+          max_force_);
     }
     return driver::Error{said};
   }
@@ -77,7 +77,7 @@ class Recorder {
   /// Measures the strength of the motors, and checks that none pulls in the wrong direction.
   driver::Result<void> probe() {
     const auto share = probe_motors(
-        bench_, file_, kProbeShare * force_most_,
+        bench_, file_, kProbeShare * max_force_,
         [this](const Eigen::Vector3d& p_WT) {
           left_ = left_ || !within(p_WT);
           return !left_;
@@ -139,7 +139,7 @@ class Recorder {
     if (order.added_mass > 0) {
       if (auto carried = carry(order.added_mass); !carried) return carried.error();
     }
-    Excitation excitation(p_WM_, order.seed, Excitation::Lines::kWith, force_most_);
+    Excitation excitation(p_WM_, order.seed, Excitation::Lines::kWith, max_force_);
     const double begin = bench_.now();
     std::uint64_t jumped = bench_.device().wire_counters().jumped;
     const auto law = [&](const driver::DeviceState& state) -> Eigen::Vector3d {
@@ -176,7 +176,7 @@ class Recorder {
       said += fmt::format(
           " Or the motors cannot carry the known mass with {:g} N: use a lighter mass, or allow "
           "more force (--force-most).",
-          force_most_);
+          max_force_);
     }
     return driver::Error{said};
   }
@@ -190,10 +190,10 @@ class Recorder {
       f = file_.R_WB * (G.transpose() * share_.cwiseProduct(tau));
     }
     // The carrying force is unchanged, and the rest is shortened as necessary.
-    const double most = Excitation::kShareMost * force_most_;
-    const double left = most * most - carried_W_.squaredNorm();
-    if (left <= 0) return carried_W_ * (most / carried_W_.norm());
-    if ((carried_W_ + f).squaredNorm() <= most * most) return carried_W_ + f;
+    const double max_force = Excitation::kShareMax * max_force_;
+    const double left = max_force * max_force - carried_W_.squaredNorm();
+    if (left <= 0) return carried_W_ * (max_force / carried_W_.norm());
+    if ((carried_W_ + f).squaredNorm() <= max_force * max_force) return carried_W_ + f;
     const double along = carried_W_.dot(f), square = f.squaredNorm();
     return carried_W_ + f * ((std::sqrt(along * along + square * left) - along) / square);
   }
@@ -207,7 +207,7 @@ class Recorder {
   BenchArm& bench_;
   const scene::ArmFile& file_;
   double lead_;                         // s
-  double force_most_;                   // N
+  double max_force_;                    // N
   Eigen::Vector3d share_;               // of the requested torques, joint by joint
   Eigen::Vector3d p_WM_{0, 0, 0};       // start, m
   Eigen::Vector3d carried_W_{0, 0, 0};  // N
@@ -234,16 +234,16 @@ driver::Result<ArmMotion> record_motion(BenchArm& bench, const scene::ArmFile& f
 bool moves_easily(const scene::ArmFile& file, const Eigen::Vector3d& p_W) {
   // Min. sine of B + C; it is 1 where the arm is isotropic [chosen: masses along an axis are at
   // most some three times those there].
-  constexpr double kSineLeast = 0.5;
+  constexpr double kSineMin = 0.5;
   const auto* const arm = std::get_if<driver::SerialArm>(&file.model.geometry);
   const Eigen::Vector3d p_BT = file.R_WB.transpose() * (p_W - file.p_WB);
   const auto q = arm != nullptr ? arm->inverse(p_BT) : std::nullopt;
-  return q && math::sin((*q)[1] + (*q)[2]) > kSineLeast && p_BT.head<2>().norm() > Excitation::kFar;
+  return q && math::sin((*q)[1] + (*q)[2]) > kSineMin && p_BT.head<2>().norm() > Excitation::kFar;
 }
 
-std::vector<Eigen::Vector3d> places_in(const scene::ArmFile& file, int count) {
+std::vector<Eigen::Vector3d> sweep_points(const scene::ArmFile& file, int count) {
   constexpr double kRoom = 0.02;  // m, radius around a point in which the arm must move easily
-  constexpr double kLeast = 0.3, kStep = 0.05;  // of the distance to a corner
+  constexpr double kReachMin = 0.3, kStep = 0.05;  // of the distance to a corner
   const auto has_room = [&](const Eigen::Vector3d& p_W) {
     for (const double x : {-kRoom, kRoom}) {
       for (const double z : {-kRoom, kRoom}) {
@@ -265,16 +265,15 @@ std::vector<Eigen::Vector3d> places_in(const scene::ArmFile& file, int count) {
     const auto place = [&] {
       return Eigen::Vector3d(middle + share * half.cwiseMax(0).cwiseProduct(side));
     };
-    while (share > kLeast && !has_room(place())) share -= kStep;
+    while (share > kReachMin && !has_room(place())) share -= kStep;
     if (has_room(place())) places.push_back(place());
   }
   return places;
 }
 
-driver::Result<std::vector<ArmMotion>> record_places(BenchArm& bench, const scene::ArmFile& file,
-                                                     const MotionOrder& order,
-                                                     const std::vector<Eigen::Vector3d>& places_W,
-                                                     const std::atomic<bool>& stop) {
+driver::Result<std::vector<ArmMotion>> record_at_points(
+    BenchArm& bench, const scene::ArmFile& file, const MotionOrder& order,
+    const std::vector<Eigen::Vector3d>& places_W, const std::atomic<bool>& stop) {
   Recorder recorder(bench, file, order, stop);
   std::vector<ArmMotion> motions;
   driver::Result<void> done = recorder.begin(order.added_mass == 0);

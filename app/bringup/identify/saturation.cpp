@@ -13,12 +13,12 @@ namespace {
 // Information required for acceptance, and min. missing share of the torque beyond the limit
 // [chosen: no hidden arm of identify_test is reported to saturate].
 constexpr double kBetter = 10;
-constexpr double kMissingLeast = 0.3;
+constexpr double kMissingMin = 0.3;
 // Max. half-width of the interval of the missing share for a valid search.
 constexpr double kSearched = 0.3;
 // Max. share of the squared residual with all of them. Other causes of a bad fit (cogging, a hand)
 // look similar to a saturated amplifier, which does not explain them.
-constexpr double kLeftMost = 0.3;
+constexpr double kLeftMax = 0.3;
 // Error of a torque found, due to held torques and the friction's signs, as a standard deviation
 // [chosen so that intervals hold 95 % of the truths, identify_further_test].
 constexpr double kMethod = 0.02;
@@ -43,8 +43,8 @@ Eigen::VectorXd pushed(const FittedMotion& motion, int joint,
   return column;
 }
 
-double beyond(double torque, double most) {
-  return torque - std::clamp(torque, -most, most);
+double beyond(double torque, double max_torque) {
+  return torque - std::clamp(torque, -max_torque, max_torque);
 }
 
 /// Joints whose motors seem to saturate.
@@ -56,34 +56,36 @@ std::vector<int> seen_of(const std::array<Saturation, 3>& all) {
   return joints;
 }
 
-/// For motors that give at most about `most`: finds all of these limits together, by Newton's rule.
-/// The missing torque is removed, and the effect of a slightly higher limit is fitted.
+/// For motors that give at most about `max_torque`: finds all of these limits together, by Newton's
+/// rule. The missing torque is removed, and the effect of a slightly higher limit is fitted.
 void refine(const FittedMotion& motion, std::array<Saturation, 3>& all) {
   const std::vector<int> joints = seen_of(all);
-  Eigen::Vector3d gain = motion.fit.theta.segment<3>(PerMass::kGain);
+  Eigen::Vector3d gain = motion.fit.theta.segment<3>(MassNormalisedFit::kGain);
   for (int round = 0; round < kRounds && !joints.empty(); ++round) {
     Eigen::VectorXd rest = motion.residual.rest;
     Eigen::MatrixXd edges(rest.size(), static_cast<Eigen::Index>(joints.size()));
     for (std::size_t i = 0; i < joints.size(); ++i) {
       const int joint = joints[i];
-      const double most = all[static_cast<std::size_t>(joint)].most.value;
+      const double max_torque = all[static_cast<std::size_t>(joint)].max_torque.value;
       rest += gain[joint] * pushed(motion, joint,
                                    torques_of(motion.motion(), joint,
-                                              [&](double tau) { return beyond(tau, most); }));
+                                              [&](double tau) { return beyond(tau, max_torque); }));
       edges.col(static_cast<Eigen::Index>(i)) =
           gain[joint] * pushed(motion, joint, torques_of(motion.motion(), joint, [&](double tau) {
-                                 return std::abs(tau) > most ? std::copysign(1.0, tau) : 0.0;
+                                 return std::abs(tau) > max_torque ? std::copysign(1.0, tau) : 0.0;
                                }));
     }
     const FurtherColumns found =
         fit_further(motion.residual.rows, rest, edges, motion.residual.clusters);
-    gain = motion.fit.theta.segment<3>(PerMass::kGain) + found.change.segment<3>(PerMass::kGain);
+    gain = motion.fit.theta.segment<3>(MassNormalisedFit::kGain) +
+           found.change.segment<3>(MassNormalisedFit::kGain);
     for (std::size_t i = 0; i < joints.size(); ++i) {
-      Estimate& most = all[static_cast<std::size_t>(joints[i])].most;
+      Estimate& max_torque = all[static_cast<std::size_t>(joints[i])].max_torque;
       const auto k = static_cast<Eigen::Index>(i);
-      most.value += std::clamp(found.factor[k], -0.3 * most.value, 0.3 * most.value);
-      most.plus_minus =
-          kNormal95 * math::hypot(std::sqrt(found.covariance(k, k)), kMethod * most.value);
+      max_torque.value +=
+          std::clamp(found.factor[k], -0.3 * max_torque.value, 0.3 * max_torque.value);
+      max_torque.plus_minus =
+          kNormal95 * math::hypot(std::sqrt(found.covariance(k, k)), kMethod * max_torque.value);
     }
   }
 }
@@ -94,7 +96,7 @@ bool explain(const FittedMotion& motion, const std::array<Saturation, 3>& all) {
   for (const int joint : seen_of(all)) {
     const Saturation& one = all[static_cast<std::size_t>(joint)];
     columns.push_back(pushed(motion, joint, torques_of(motion.motion(), joint, [&](double tau) {
-                               return -beyond(tau, one.most.value);
+                               return -beyond(tau, one.max_torque.value);
                              })));
   }
   if (columns.empty()) return false;
@@ -103,7 +105,7 @@ bool explain(const FittedMotion& motion, const std::array<Saturation, 3>& all) {
     together.col(static_cast<Eigen::Index>(i)) = columns[i];
   }
   return fit_further(motion.residual.rows, motion.residual.rest, together, motion.residual.clusters)
-             .left < kLeftMost;
+             .left < kLeftMax;
 }
 
 }  // namespace
@@ -118,23 +120,23 @@ std::array<Saturation, 3> saturations(const FittedMotion& motion) {
     }
     std::sort(asked.begin(), asked.end());
     one.asked = asked.back();
-    const double gain = motion.fit.theta[PerMass::kGain + joint];
+    const double gain = motion.fit.theta[MassNormalisedFit::kGain + joint];
     double best = 0;
     for (const double share : {0.5, 0.7, 0.85, 0.95, 0.98}) {
-      const double most =
+      const double max_torque =
           asked[static_cast<std::size_t>(share * static_cast<double>(asked.size() - 1))];
       const Eigen::MatrixXd column = pushed(
           motion, joint,
-          torques_of(motion.motion(), joint, [&](double tau) { return -beyond(tau, most); }));
+          torques_of(motion.motion(), joint, [&](double tau) { return -beyond(tau, max_torque); }));
       const FurtherColumns found =
           fit_further(motion.residual.rows, motion.residual.rest, column, motion.residual.clusters);
       const double missing = found.factor[0] / gain;
       const double error = kNormal95 * std::sqrt(found.covariance(0, 0)) / gain;
       one.searched = one.searched || error < kSearched;
-      if (found.better < std::max(best, kBetter) || missing < kMissingLeast) continue;
+      if (found.better < std::max(best, kBetter) || missing < kMissingMin) continue;
       best = found.better;
       one.seen = true;
-      one.most.value = most;
+      one.max_torque.value = max_torque;
     }
   }
   refine(motion, all);

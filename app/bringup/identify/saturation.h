@@ -8,10 +8,10 @@ namespace thimble::bringup {
 
 /// Whether a motor delivers all of the requested torque.
 struct Saturation {
-  bool seen = false;  ///< It delivers at most `most`: significant.
-  Estimate most;     ///< Max. torque, N m at the joint with the arm file's constants; empty if none
-                     ///< was seen.
-  double asked = 0;  ///< Largest requested torque, N m at the joint.
+  bool seen = false;    ///< It delivers at most `max_torque`: significant.
+  Estimate max_torque;  ///< Max. torque, N m at the joint with the arm file's constants; empty if
+                        ///< none was seen.
+  double asked = 0;       ///< Largest requested torque, N m at the joint.
   bool searched = false;  ///< The requested torque was large enough to show saturation.
 };
 

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/parts/part.h"
+#include "cli/report_error.h"
 
 namespace thimble::cli {
 
@@ -29,9 +29,10 @@ void add_absent_command(CLI::App& app, int& exit_code, const std::string& name,
                                                  : std::string(" (not in this build)")));
   command->prefix_command();
   command->callback([name, part, packaged, &exit_code] {
-    exit_code = complain({"`thimble " + name + "` is not " +
-                          (packaged ? "installed: " : "in this build: ") + how_to_get(part) + "."},
-                         kExitBadInput);
+    exit_code =
+        report_error({"`thimble " + name + "` is not " +
+                      (packaged ? "installed: " : "in this build: ") + how_to_get(part) + "."},
+                     kExitBadInput);
   });
 }
 

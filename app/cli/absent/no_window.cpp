@@ -7,8 +7,8 @@ namespace thimble::cli {
 
 void add_window_command(CLI::App& app, int& exit_code) {
   if (!has_window()) return add_view_command(app, exit_code, {});
-  add_absent_command(app, exit_code, "view",
-                     "Show a run that goes on in another process, or a recording", kViewer);
+  add_absent_command(app, exit_code, "view", "Show a run of another process, or a recording",
+                     kViewer);
 }
 
 bool has_window() {

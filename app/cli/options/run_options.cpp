@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/file_options.h"
 #include "cli/parts/part.h"
+#include "cli/usage/help_text.h"
 #include "hold_key.h"
 #include "log/logger.h"
 #include "ros2/ros_module.h"
@@ -18,7 +19,7 @@ namespace thimble::cli {
 
 driver::Result<void> check_run_options(RunOptions& options) {
   if (options.budget && options.quality != "auto") {
-    return driver::Error{"--budget says what --quality auto may spend: name both, or neither."};
+    return driver::Error{"--budget requires --quality auto. Add it, or remove --budget."};
   }
   if (auto fits = check_ros_arguments(options.ros); !fits) return fits;
   const auto hold = session::hold_named(options.hold_to_run);
@@ -27,19 +28,19 @@ driver::Result<void> check_run_options(RunOptions& options) {
     if (auto there = session::HoldKey::check(); !there) return there;
     if (options.clock == "virtual") {
       return driver::Error{
-          "--hold-to-run key needs real time: leave --clock virtual away, or hold a button."};
+          "--hold-to-run key requires real time. Remove --clock virtual, or use a button."};
     }
   }
   if (!options.save_mesh.empty() &&
       std::filesystem::path(options.save_mesh).extension() != ".off") {
     return driver::Error{"--save-mesh: " + options.save_mesh +
-                         ": a mesh is written as OFF; let the name end in .off."};
+                         ": meshes are written as OFF. Use a file name that ends in .off."};
   }
   if (options.stepped() && options.devices != std::vector<std::string>{"sim"}) {
-    return driver::Error{"A real arm has the time of the world: leave --clock virtual away."};
+    return driver::Error{"--clock virtual cannot be used with a real arm. Remove it."};
   }
   if (options.by_topic() && !options.ros.asked) {
-    return driver::Error{"--hand topic needs the topics: add --ros2."};
+    return driver::Error{"--hand topic requires --ros2. Add it."};
   }
   options.ros.options.lead_hand = options.by_topic();
   if (options.ros.asked) {
@@ -47,39 +48,41 @@ driver::Result<void> check_run_options(RunOptions& options) {
   }
   const bool felt = options.sound || options.rumble;
   if (felt && !options.view && !options.by_viewer()) {
-    return driver::Error{"--sound and --rumble are the window's: add --view."};
+    return driver::Error{"--sound and --rumble require the window. Add --view."};
   }
   if (felt && options.clock == "virtual") {
     return driver::Error{
-        "--sound and --rumble need real time: leave --clock away. Of a recording, `thimble export "
-        "REC.h5 --sound FILE.wav` makes the sound."};
+        "--sound and --rumble require real time. Remove --clock virtual. For the sound of a "
+        "recording, use `thimble export REC.h5 --sound FILE.wav`."};
   }
   if (!options.by_viewer() && !options.by_topic()) return {};
   if (options.devices != std::vector<std::string>{"sim"}) {
     return driver::Error{"--hand " + options.hand +
-                         " leads the simulated arm's hand; a real arm has yours."};
+                         " moves the hand of a simulated arm. Remove it to use a real arm."};
   }
   if (options.by_topic()) return {};
   if (options.clock == "virtual" && !options.duration) {
     return driver::Error{
         "--hand " + options.hand +
-        " without an end needs real time: leave --clock away, or give --duration."};
+        " requires real time or a fixed duration. Remove --clock virtual, or add --duration."};
   }
   if (!options.no_view && !has_window()) {
     return driver::Error{"--hand " + options.hand +
-                         " needs the window, which is not installed: " + how_to_get(kViewer) + "."};
+                         " requires the window, which is not installed: " + how_to_get(kViewer) +
+                         "."};
   }
   if (!options.no_view && !session::has_display()) {
     return driver::Error{
         "--hand " + options.hand +
-        " needs the window, and there is no screen: DISPLAY and WAYLAND_DISPLAY are not set. Start "
-        "it on a desktop, or add --no-view and lead the hand from `thimble view --hand " +
+        " requires the window, but there is no screen: DISPLAY and WAYLAND_DISPLAY are not set. "
+        "Start it on a desktop, or add --no-view and move the hand from `thimble view --hand " +
         options.hand + "`."};
   }
   return {};
 }
 
-driver::Result<void> check_course(const RunOptions& options, const session::RunArms& arms) {
+driver::Result<void> check_restart_options(const RunOptions& options,
+                                           const session::RunArms& arms) {
   const char* asked = options.loop                     ? "--loop"
                       : options.reload.value_or(false) ? "--reload"
                       : options.speed                  ? "--speed"
@@ -88,17 +91,16 @@ driver::Result<void> check_course(const RunOptions& options, const session::RunA
   if (asked == nullptr) return {};
   if (arms.real()) {
     return driver::Error{fmt::format(
-        "{} is for simulated arms: a real one has the time of the world, and only a person at it "
-        "begins a run.",
+        "{} cannot be used with a real arm, which runs in real time and is started by a person. "
+        "Remove it.",
         asked)};
   }
   if (options.ros.asked) {
-    return driver::Error{
-        fmt::format("{} does not go with --ros2, whose topics belong to one run.", asked)};
+    return driver::Error{fmt::format(
+        "{} cannot be used with --ros2, whose topics belong to one run. Remove it.", asked)};
   }
   if (options.speed && !options.clock.empty() && options.clock != "paced") {
-    return driver::Error{"--speed needs simulated time at a pace: leave --clock " + options.clock +
-                         " away."};
+    return driver::Error{"--speed requires --clock paced. Remove --clock " + options.clock + "."};
   }
   return {};
 }
@@ -142,9 +144,9 @@ session::SessionOptions session_options(const RunOptions& options, const session
 
 session::ViewerChoice viewer_choice(const RunOptions& options) {
   const bool asked = options.for_a_person();
-  if (asked && !has_window() && scene::talk() != scene::Talk::kQuiet) {
+  if (asked && !has_window() && scene::verbosity() != scene::Verbosity::kQuiet) {
     scene::terminal().info(
-        "No window is installed: {}; `thimble view --text` prints what happens in the run.",
+        "The window is not installed: {}; `thimble view --text` prints the state of the run.",
         how_to_get(kViewer));
   }
   if (options.no_view || !has_window()) return session::ViewerChoice::kNever;
@@ -159,37 +161,48 @@ std::vector<std::string> viewer_arguments(const RunOptions& options) {
   return arguments;
 }
 
-void add_hold_option(CLI::App& command, std::string& hold) {
-  command.add_option("--hold-to-run", hold,
-                     "Give forces only while this is held: button (the arm's first), button2 to "
-                     "button16, or key (the space bar, in this terminal or in the window)");
+CLI::Option* add_hold_option(CLI::App& command, std::string& hold, const std::string& about) {
+  return command.add_option("--hold-to-run", hold, about)->option_text("INPUT");
 }
 
-void add_run_options(CLI::App& command, RunOptions& options) {
-  add_scene_option(command, options.scene)->required();
+namespace {
+
+void add_arm_options(CLI::App& command, RunOptions& options) {
+  constexpr const char* kArm = "Arm";
   command
       .add_option("--device", options.devices,
-                  "Arm to use: sim, auto, or a name that `thimble devices` lists; of a scene with "
-                  "several arms NAME=ARM for each real one")
+                  "Arm to use: sim, auto, or a name from `thimble devices`")
       ->take_all()
       ->allow_extra_args(false)
-      ->capture_default_str();
-  add_arm_option(
-      command, options.arm_file,
-      "Arm file in place of the scene's own; of a real arm, in place of the one it brings");
-  command.add_option("--firmware", options.firmware, "Firmware image for an arm that needs one")
-      ->check(CLI::ExistingFile);
-  command.add_flag("--yes", options.yes, "Give a real arm forces without asking");
-  command.add_flag("--unchecked", options.unchecked,
-                   "Give a real arm its whole force though `thimble feel-check` was not passed; "
-                   "without it such an arm gets at most 0.5 N");
-  command.add_flag("--homed", options.homed,
-                   "A real arm was in its home pose when it got power: check only that its tip is "
-                   "in the workspace");
-  command.add_flag("--no-real-time", options.no_real_time,
-                   "Use a real arm though the loop gets no real-time priority");
-  add_hold_option(command, options.hold_to_run);
-  command.add_option("--duration", options.duration, "Seconds to run; the scene's own if absent")
+      ->capture_default_str()
+      ->option_text("ARM")
+      ->group(kArm);
+  add_arm_option(command, options.arm_file, "Arm file to use instead of the scene's or the arm's")
+      ->group(kArm);
+  command.add_option("--firmware", options.firmware, "Firmware image, for arms that need one")
+      ->check(CLI::ExistingFile)
+      ->group(kArm);
+  command.add_flag("--yes", options.yes, "Enable the forces of a real arm without asking")
+      ->group(kArm);
+  command
+      .add_flag("--unchecked", options.unchecked,
+                "Allow full force without a feel check (else 0.5 N)")
+      ->group(kArm);
+  command.add_flag("--homed", options.homed, "Trust that the arm was powered on in its home pose")
+      ->group(kArm);
+  command
+      .add_flag("--no-real-time", options.no_real_time, "Run a real arm without real-time priority")
+      ->group(kArm);
+  add_hold_option(command, options.hold_to_run,
+                  "Enable forces only while this button or key is held")
+      ->group(kArm);
+}
+
+void add_time_options(CLI::App& command, RunOptions& options) {
+  constexpr const char* kTime = "Time";
+  command
+      .add_option("--duration", options.duration,
+                  "Duration of the run (default: that of the scene)")
       ->check(CLI::Validator(
           [](const std::string& text) {
             char* end = nullptr;
@@ -199,71 +212,117 @@ void add_run_options(CLI::App& command, RunOptions& options) {
                 end != text.c_str() && *end == 0 && seconds >= 1e-3 && seconds <= 86400;
             return good ? std::string() : "expected 0.001 to 86400 seconds, found " + text;
           },
-          "SECONDS"));
+          "SECONDS"))
+      ->group(kTime);
   command
-      .add_option("--clock", options.clock,
-                  "virtual: as fast as it computes, repeatable to the bit; paced: the same ticks, "
-                  "as fast as --speed says; wall: in real time, as with a real arm "
-                  "(if absent: paced with --view, a hand led in the window or --speed, wall with "
-                  "--ros2, virtual otherwise)")
-      ->check(CLI::IsMember({"virtual", "paced", "wall"}));
+      .add_option("--clock", options.clock, "As fast as possible, paced by --speed, or real time")
+      ->check(CLI::IsMember({"virtual", "paced", "wall"}))
+      ->group(kTime);
+  command.add_option("--speed", options.speed, "Speed relative to real time (default 1)")
+      ->check(CLI::Range(session::kSpeedMin, session::kSpeedMax))
+      ->group(kTime);
+  command.add_flag("--loop", options.loop, "Restart the run whenever it ends")->group(kTime);
   command
-      .add_option("--speed", options.speed,
-                  "Pace of a simulated arm's run, times real time; 1 if absent, and a viewer "
-                  "changes it")
-      ->check(CLI::Range(session::kSpeedLeast, session::kSpeedMost));
-  command.add_flag("--reload,!--no-reload", options.reload,
-                   "Begin anew when the file of the scene or of its arm changes, with a simulated "
-                   "arm (if absent: with --view or a hand led in the window)");
-  command
-      .add_option("--hand", options.hand,
-                  "Who leads the simulated hand: path, as the scene says; mouse, keyboard, gamepad "
-                  "or spacemouse (3Dconnexion), in the window, until it is closed; topic, with "
-                  "--ros2, by the topic command/pose (crtk: servo_cp)")
+      .add_flag("--reload,!--no-reload", options.reload,
+                "Restart when the scene or arm file changes")
+      ->group(kTime);
+}
+
+void add_hand_options(CLI::App& command, RunOptions& options) {
+  command.add_option("--hand", options.hand, "What moves the simulated hand")
       ->check(CLI::IsMember({"path", "mouse", "keyboard", "gamepad", "spacemouse", "topic"}))
-      ->capture_default_str();
-  CLI::Option* view = command.add_flag("--view", options.view, "Watch the run in a window");
-  CLI::Option* none =
-      command.add_flag("--no-view", options.no_view, "Show the run to nobody")->excludes(view);
+      ->capture_default_str()
+      ->group("Hand");
+}
+
+void add_viewing_options(CLI::App& command, RunOptions& options) {
+  constexpr const char* kViewing = "Viewing";
+  CLI::Option* view =
+      command.add_flag("--view", options.view, "Show the run in a window")->group(kViewing);
+  CLI::Option* none = command
+                          .add_flag("--no-view", options.no_view,
+                                    "Open no window, and do not offer the run to viewers")
+                          ->excludes(view)
+                          ->group(kViewing);
+  command.get_option("--loop")->excludes(none);
   command
-      .add_flag(
-          "--loop", options.loop,
-          "Restart whenever the scene is over, with a simulated arm, until Ctrl-C or a viewer "
-          "ends it, or with --view its window is closed; recordings after the first are "
-          "FILE-2.h5 and so on")
-      ->excludes(none);
-  command.add_flag("--sound", options.sound,
-                   "With the window: play what is felt as sound (clicks, textures, friction)");
-  command.add_flag("--rumble", options.rumble,
-                   "With the window: let a gamepad rumble as hard as the touch is");
-  command.add_option("--name", options.name,
-                     "Name of the run for `thimble view NAME`; the scene's if absent");
-  add_quality_option(
-      command, options.quality,
-      "draft, normal (what the scene says), reference or auto (the cheapest at which nothing wrong "
-      "can be felt): points on the diagrams of `thimble study accuracy`; each choice is printed");
+      .add_flag("--sound", options.sound, "Play the contact as sound (clicks, textures, friction)")
+      ->group(kViewing);
+  command.add_flag("--rumble", options.rumble, "Rumble a gamepad in proportion to the contact")
+      ->group(kViewing);
+  command.add_option("--name", options.name, "Name for `thimble view NAME` (default: the scene's)")
+      ->option_text("NAME")
+      ->group(kViewing);
+}
+
+void add_computation_options(CLI::App& command, RunOptions& options) {
+  constexpr const char* kComputation = "Computation";
+  add_quality_option(command, options.quality, "Accuracy preset; normal uses the scene's settings")
+      ->group(kComputation);
+  command.add_option("--budget", options.budget, "Computing time per tick for --quality auto, ns")
+      ->check(CLI::Range(1.0, 1e9))
+      ->group(kComputation);
+  command.add_option("--seed", options.seed, "Seed of all random numbers (default: the scene's)")
+      ->group(kComputation);
+}
+
+void add_output_options(CLI::App& command, RunOptions& options) {
+  constexpr const char* kOutput = "Output";
   command
-      .add_option("--budget", options.budget,
-                  "With --quality auto: the most accurate points within so many ns per tick, of "
-                  "all objects "
-                  "together, on the machine that the stored diagrams name")
-      ->check(CLI::Range(1.0, 1e9));
-  command.add_option("--report", options.report,
-                     "Folder for report.json, pictures and index.html, a page that plays the run");
-  CLI::Option* record = command.add_option(
-      "--record", options.record,
-      "Recording of every tick to write (HDF5; thimble export makes a table of it)");
+      .add_option("--report", options.report, "Write report.json, pictures and a page of the run")
+      ->option_text("DIR")
+      ->group(kOutput);
+  CLI::Option* record = command.add_option("--record", options.record, "Record every tick (HDF5)")
+                            ->option_text("FILE")
+                            ->group(kOutput);
   command.add_flag("--force", options.force, "Let --record replace an existing recording")
-      ->needs(record);
-  CLI::Option* save = command.add_option(
-      "--save-mesh", options.save_mesh,
-      "OFF file for the meshes as they are at the end: moved, dented, sculpted (world, m)");
-  command
-      .add_option("--save-object", options.save_object,
-                  "Save the mesh of this object of the scene alone")
-      ->needs(save);
+      ->needs(record)
+      ->group(kOutput);
+  CLI::Option* save = command
+                          .add_option("--save-mesh", options.save_mesh,
+                                      "Save the final meshes (OFF, world frame, m)")
+                          ->option_text("FILE")
+                          ->group(kOutput);
+  command.add_option("--save-object", options.save_object, "Save only the mesh of this object")
+      ->option_text("NAME")
+      ->needs(save)
+      ->group(kOutput);
+}
+
+constexpr const char* kRunNotes =
+    "--device   A scene with several arms takes NAME=ARM for each real arm.\n"
+    "--homed    Only the workspace is checked then, not the pose of the tip.\n"
+    "--hold-to-run takes button (the first of the arm), button2 to button16, or key\n"
+    "           (the space bar, in this terminal or in the window).\n"
+    "--clock    virtual and paced give bit-identical results; real arms use wall.\n"
+    "           Default: wall with --ros2; paced with --view, --speed, or a hand\n"
+    "           moved in the window; otherwise virtual.\n"
+    "--speed    Simulated arms only, as --loop and --reload. A viewer can change it.\n"
+    "--loop     Ends with Ctrl-C, by a viewer, or when the window of --view closes.\n"
+    "           Later recordings are named FILE-2.h5 and so on.\n"
+    "--reload   Default with --view, or with a hand moved in the window.\n"
+    "--hand     path: the path in the scene. mouse, keyboard, gamepad, spacemouse\n"
+    "           (3Dconnexion): in the window, until it is closed. topic: the ROS 2\n"
+    "           topic command/pose (crtk: servo_cp).\n"
+    "--sound, --rumble need the window.\n"
+    "--quality  Points on the diagrams of `thimble study accuracy`. auto: the\n"
+    "           cheapest point without a perceptible error; with --budget the most\n"
+    "           accurate one for all objects together, on the machine of the stored\n"
+    "           diagrams. The choices are printed.";
+
+}  // namespace
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  add_scene_option(command, options.scene)->required();
+  add_arm_options(command, options);
+  add_time_options(command, options);
+  add_hand_options(command, options);
+  add_viewing_options(command, options);
+  add_computation_options(command, options);
+  add_output_options(command, options);
   add_ros_options(command, options.ros, RosTime::kRealOrStepped);
-  command.add_option("--seed", options.seed, "Seed of everything random; the scene's if absent");
+  add_example(command, "thimble run elephant --view --record touch.h5",
+              std::string(kRunNotes) + "\n" + kRosNotes);
 }
 
 }  // namespace thimble::cli

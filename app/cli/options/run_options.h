@@ -58,17 +58,17 @@ struct RunOptions {
   bool reloads() const { return reload.value_or(for_a_person()); }
 };
 
-/// Adds the option that names an enabling input.
-void add_hold_option(CLI::App& command, std::string& hold);
+/// Adds --hold-to-run, which names an enabling input.
+CLI::Option* add_hold_option(CLI::App& command, std::string& hold, const std::string& about);
 
 /// Adds the arguments of `thimble run`. The options must outlive the command.
 void add_run_options(CLI::App& command, RunOptions& options);
 
-/// Fails if the options contradict each other; the error says what to write instead.
+/// Fails if the options contradict each other; the error contains the remedy.
 driver::Result<void> check_run_options(RunOptions& options);
 
 /// Fails if an option that restarts or paces the run cannot be used with these arms.
-driver::Result<void> check_course(const RunOptions& options, const session::RunArms& arms);
+driver::Result<void> check_restart_options(const RunOptions& options, const session::RunArms& arms);
 
 /// Returns the session's options. `options` must outlive them.
 session::SessionOptions session_options(const RunOptions& options, const session::RunArms& arms);

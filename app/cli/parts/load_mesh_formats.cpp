@@ -27,24 +27,24 @@ driver::Result<const cli::MeshFormats*> load_formats(const std::string& ending) 
   const auto file = cli::find_beside_program(cli::kMeshFormatsFile,
                                              {".", THIMBLE_MODULES, THIMBLE_MODULES_OF_PARTS});
   if (file.empty()) {
-    return driver::Error{"." + ending +
-                         " meshes need the package thimble-mesh-formats: `sudo apt install "
-                         "thimble-mesh-formats`, or "
-                         "save it as OFF, OBJ, PLY, STL or glTF 2."};
+    return driver::Error{
+        "." + ending +
+        " meshes require the package thimble-mesh-formats. Run `sudo apt install "
+        "thimble-mesh-formats`, or save the mesh as OFF, OBJ, PLY, STL or glTF 2."};
   }
   const std::lock_guard<std::mutex> lock(loading);
   void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (module == nullptr) {
     return driver::Error{file.string() + " cannot be loaded: " + dlerror() +
-                         ". Install the package thimble-mesh-formats again."};
+                         ". Reinstall the package thimble-mesh-formats."};
   }
   // Never unloaded: its functions may be called again.
   const auto* formats =
       static_cast<const cli::MeshFormats*>(dlsym(module, cli::kMeshFormatsSymbol));
   if (formats == nullptr || std::strcmp(formats->version, THIMBLE_VERSION) != 0) {
     return driver::Error{file.string() +
-                         " is not of this version of Thimble: install the packages thimble and "
-                         "thimble-mesh-formats of one version."};
+                         " belongs to another version of Thimble. Install the same version of the "
+                         "packages thimble and thimble-mesh-formats."};
   }
   return formats;
 }

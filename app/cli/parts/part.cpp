@@ -36,7 +36,7 @@ std::string how_to_get(const Part& part) {
   return (package.empty()
               ? ""
               : "install the package " + package + " (`sudo apt install " + package + "`), or ") +
-         "build the whole program from its sources (app/setup.sh release thimble" +
+         "build it from source (app/setup.sh release thimble" +
          (option.empty() ? "" : "; CMake: " + option + "=ON") + ")";
 }
 
@@ -47,7 +47,7 @@ void keep_arguments(char** argv) {
 driver::Error start_part(const std::filesystem::path& program) {
   execv(program.c_str(), arguments);
   return {program.string() + " cannot be started: " + std::strerror(errno) +
-          "; install its package again."};
+          ". Reinstall its package."};
 }
 
 }  // namespace thimble::cli

@@ -7,15 +7,17 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/exit_code.h"
 #include "cli/log_options.h"
 #include "cli/parts/part.h"
+#include "cli/report_error.h"
+#include "cli/usage/help_text.h"
 #include "cli/usage/usage_error.h"
 #include "log/console.h"
 #include "log/logger.h"
@@ -28,14 +30,15 @@ namespace thimble::cli {
 namespace {
 
 constexpr const char* kFooter =
-    "Exit codes: 0 done, 1 unexpected trouble, 2 wrong arguments or input, 3 no arm,\n"
-    "4 the force went off with a fault, 5 a figure, a fit or a check misses its goal or did not "
-    "run,\n"
-    "130 ended early by Ctrl-C or SIGTERM.\n"
-    "A physical arm moves by itself: keep clear of it, and keep its power switch at hand.";
+    "Exit codes: 0 done, 1 unexpected error, 2 invalid arguments or input, 3 no arm,\n"
+    "4 force switched off by a fault, 5 a figure, fit or check misses its goal or\n"
+    "did not run, 130 interrupted by Ctrl-C or SIGTERM.\n"
+    "A real arm moves by itself: keep clear of it, and keep its power switch within\n"
+    "reach.";
 
 int run(int argc, char** argv, const Program& program) {
-  CLI::App app("Thimble makes virtual objects touchable.", "thimble");
+  CLI::App app("Thimble lets you feel virtual objects through a force-feedback arm.", "thimble");
+  app.formatter(std::make_shared<HelpFormatter>());
   const scene::BuildInfo build = scene::build_info();
   app.set_version_flag("--version", "thimble " + std::string(build.version) + " (" +
                                         std::string(build.type) + ", " +
@@ -67,9 +70,9 @@ int run(int argc, char** argv, const Program& program) {
     scene::write_text(stdout, out.str());
     return kExitDone;
   } catch (const CLI::RuntimeError& error) {  // a part's program did not start
-    return complain({error.what()}, kExitTrouble);
+    return report_error({error.what()}, kExitTrouble);
   } catch (const CLI::ParseError& error) {
-    return complain({usage_error(app, error)}, kExitBadInput);
+    return report_error({usage_error(app, error)}, kExitBadInput);
   }
   return exit_code;
 }
@@ -81,8 +84,7 @@ int with_output(int exit_code) {
   struct stat output {};
   const bool closed = fstat(STDOUT_FILENO, &output) != 0;
   if (!lost || closed || S_ISFIFO(output.st_mode) || S_ISSOCK(output.st_mode)) return exit_code;
-  scene::logger().error(
-      "What was to be printed could not be written: is the disk full that it goes to?");
+  scene::logger().error("Failed to write the output. Is the disk full?");
   return exit_code == kExitDone ? kExitTrouble : exit_code;
 }
 
@@ -90,15 +92,15 @@ int with_output(int exit_code) {
 
 int run_program(int argc, char** argv, const Program& program) {
   if (!output::open_standard_streams()) return kExitTrouble;
-  scene::outlive_trouble_with_files();
+  scene::ignore_sigpipe_and_sigxfsz();
   keep_arguments(argv);
   // Catches every exception, so that destructors run and the arm is left with zero force.
   try {
     return with_output(run(argc, argv, program));
   } catch (const std::exception& trouble) {
-    scene::logger().critical("unexpected trouble: {}", trouble.what());
+    scene::logger().critical("unexpected error: {}", trouble.what());
   } catch (...) {
-    scene::logger().critical("unexpected trouble.");
+    scene::logger().critical("unexpected error.");
   }
   return kExitTrouble;
 }

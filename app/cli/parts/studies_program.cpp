@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   using namespace thimble::cli;
   return run_program(argc, argv,
                      {.name = "thimble-studies",
-                      .about = "measure accuracy, cost and stability of touch",
+                      .about = "measure accuracy, cost and stability of haptic rendering",
                       .commands = {add_study_command, add_bench_command, ::add_mesh_command,
                                    add_cost_probe_command}});
 }

@@ -6,6 +6,6 @@ int main(int argc, char** argv) {
   using namespace thimble::cli;
   return run_program(argc, argv,
                      {.name = "thimble-viewer",
-                      .about = "show touched objects in a window and in pictures",
+                      .about = "show runs in a window and in pictures",
                       .commands = {add_shot_command, add_window_command}});
 }

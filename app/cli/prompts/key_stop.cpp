@@ -8,7 +8,7 @@
 namespace thimble::cli {
 namespace {
 
-constexpr int kLook_ms = 20;  // [chosen: too short to be noticed]
+constexpr int kPollTime_ms = 20;  // [chosen: too short to be noticed]
 
 }  // namespace
 
@@ -38,7 +38,7 @@ KeyStop::~KeyStop() {
 void KeyStop::listen() {
   while (!over_.load()) {
     pollfd terminal{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
-    if (poll(&terminal, 1, kLook_ms) <= 0 || !has_terminal()) continue;
+    if (poll(&terminal, 1, kPollTime_ms) <= 0 || !has_terminal()) continue;
     char key = 0;
     // A closed terminal stops the program too, because no key can stop it any more.
     pressed_.store(read(STDIN_FILENO, &key, 1) == 1);

@@ -9,7 +9,7 @@
 
 namespace thimble::cli {
 
-bool says_yes(const std::string& question, const std::atomic<bool>& stop) {
+bool ask_yes_no(const std::string& question, const std::atomic<bool>& stop) {
   scene::print_format("%s [y/N] ", question.c_str());
   std::fflush(stdout);
   constexpr int kAnswer_ms = 50;  // a signal does not interrupt a read by itself

@@ -5,8 +5,9 @@
 #include <string_view>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "cli/study/end_study.h"
+#include "cli/usage/help_text.h"
 #include "output/output_plan.h"
 #include "studies/study.h"
 
@@ -16,9 +17,9 @@ namespace {
 int run_study(const studies::Study& study, const std::filesystem::path& folder) {
   output::OutputPlan plan;
   plan.write_folder("--out", folder, {"figures.json"});
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto figures = study.run(folder);
-  if (!figures) return complain(figures.error(), kExitTrouble);
+  if (!figures) return report_error(figures.error(), kExitTrouble);
   return end_study(*figures, folder);
 }
 
@@ -37,7 +38,7 @@ AddOptions options_of(const studies::Study& study) {
 }  // namespace
 
 void add_study_command(CLI::App& app, int& exit_code) {
-  CLI::App* group = app.add_subcommand("study", "Measure, plot and report figures with goals");
+  CLI::App* group = app.add_subcommand("study", "Run a study; write plots and figures");
   group->require_subcommand(1);
   for (const studies::Study& study : studies::studies()) {
     CLI::App* command = group->add_subcommand(std::string(study.name), std::string(study.about));
@@ -46,10 +47,14 @@ void add_study_command(CLI::App& app, int& exit_code) {
       continue;
     }
     auto folder = std::make_shared<std::string>("study-" + std::string(study.name));
-    command->add_option("--out", *folder, "Folder for pictures, tables and figures.json")
+    command->add_option("--out", *folder, "Folder for the results")
+        ->option_text("DIR")
         ->capture_default_str();
     command->callback([&study, folder, &exit_code] { exit_code = run_study(study, *folder); });
   }
+  add_example(*group, "thimble study friction --out friction",
+              "A study writes pictures, tables and figures.json. The exit code is 5 if a figure\n"
+              "misses its goal.");
 }
 
 }  // namespace thimble::cli

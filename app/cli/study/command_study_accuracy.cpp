@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/file_options.h"
+#include "cli/report_error.h"
 #include "cli/study/end_study.h"
+#include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "output/output_file.h"
 #include "output/output_plan.h"
@@ -34,29 +35,29 @@ int run_accuracy(const AccuracyOptions& options) {
   if (!options.table.empty()) {
     output::OutputPlan plan;
     plan.write("--table", options.table, output::kQualityTable);
-    if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+    if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
     const auto written =
         output::write_file(options.table, output::kQualityTable, studies::quality_table_text());
-    if (!written) return complain(written.error(), kExitTrouble);
+    if (!written) return report_error(written.error(), kExitTrouble);
     scene::print_format("Points for --quality auto: %s\n", options.table.c_str());
     return kExitDone;
   }
   const std::filesystem::path folder = options.out;
   output::OutputPlan plan;
   plan.write_folder("--out", folder, {"figures.json", "index.html"});
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const std::atomic<bool>& stop = scene::catch_interrupts();
   const auto report = studies::study_accuracy({.axes = options.axes,
                                                .count = !options.no_count,
                                                .resume = options.resume,
                                                .folder = folder},
                                               stop);
-  if (!report) return complain(report.error(), kExitBadInput);
+  if (!report) return report_error(report.error(), kExitBadInput);
   if (report->stopped) {
-    scene::print_format("Stopped early; the same command with --resume continues.\n");
+    scene::print_format("Interrupted. To continue, run the same command with --resume.\n");
     return kExitInterrupted;
   }
-  return end_study(report->figures, folder, "; the page is index.html there");
+  return end_study(report->figures, folder, "; the page is index.html");
 }
 
 struct GatingOptions {
@@ -69,9 +70,8 @@ struct GatingOptions {
 driver::Result<void> write_gating_runs(const std::string& scene,
                                        const studies::GatingReport& report,
                                        const std::filesystem::path& folder) {
-  studies::RunPages pages(
-      folder, "Which effects of the arm the scene could do without",
-      "The decisions are in gating.txt; these are the runs that were compared.");
+  studies::RunPages pages(folder, "Effects of the arm that the scene does not need",
+                          "The decisions are in gating.txt; these runs were compared.");
   if (auto added = pages.add(scene, "full", "with all effects of the arm"); !added) return added;
   session::SessionOptions reduced;
   reduced.adjust = [&report](scene::Scene& changed) {
@@ -79,7 +79,7 @@ driver::Result<void> write_gating_runs(const std::string& scene,
       if (one.left_out) studies::leave_out(one.name, changed);
     }
   };
-  if (auto added = pages.add(scene, "reduced", "without those it could do without", reduced);
+  if (auto added = pages.add(scene, "reduced", "without the unnecessary effects", reduced);
       !added) {
     return added;
   }
@@ -91,18 +91,18 @@ int run_gating(const GatingOptions& options) {
   output::OutputPlan plan;
   plan.read(options.scene);
   plan.write_folder("--out", folder, {"figures.json", "gating.txt", "index.html"});
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto report = studies::decide_gating(options.scene, !options.no_count);
-  if (!report) return complain(report.error(), kExitBadInput);
+  if (!report) return report_error(report.error(), kExitBadInput);
   const std::string text = studies::gating_text(*report);
   scene::print_format("%s", text.c_str());
   for (const auto& written :
        {report::write_figures(studies::figures_of(*report), folder / "figures.json"),
         report::write_text(text, folder / "gating.txt"),
         write_gating_runs(options.scene, *report, folder)}) {
-    if (!written) return complain(written.error(), kExitTrouble);
+    if (!written) return report_error(written.error(), kExitTrouble);
   }
-  scene::print_format("Written to %s; index.html there lists pages of the runs.\n", folder.c_str());
+  scene::print_format("Written to %s; index.html lists the pages of the runs.\n", folder.c_str());
   return kExitDone;
 }
 
@@ -112,6 +112,7 @@ void add_gating_options(CLI::App& command, int& exit_code) {
   auto options = std::make_shared<GatingOptions>();
   add_scene_option(command, options->scene)->required();
   command.add_option("--out", options->out, "Folder for gating.txt and figures.json")
+      ->option_text("DIR")
       ->capture_default_str();
   command.add_flag("--no-count", options->no_count, "Do not count instructions");
   command.callback([options, &exit_code] { exit_code = run_gating(*options); });
@@ -119,19 +120,22 @@ void add_gating_options(CLI::App& command, int& exit_code) {
 
 void add_accuracy_options(CLI::App& command, int& exit_code) {
   auto options = std::make_shared<AccuracyOptions>();
-  command.add_option("--axis", options->axes,
-                     "Axes to measure, such as tessellation or velocity; all, if none is named");
-  command.add_option("--out", options->out, "Folder for the page, pictures, tables, figures.json")
+  command.add_option("--axis", options->axes, "Axes to measure, e.g. velocity (default: all)")
+      ->option_text("NAME ...");
+  command.add_option("--out", options->out, "Folder for the page, pictures and tables")
+      ->option_text("DIR")
       ->capture_default_str();
-  command.add_option(
-      "--table", options->table,
-      "Write the points that `thimble run --quality auto` chooses on instead, as they "
-      "are built in (app/scene/src/quality/quality_table.inc), measured on this machine");
-  command.add_flag(
-      "--no-count", options->no_count,
-      "Do not count instructions, which takes minutes; time alone says what is cheaper");
-  command.add_flag("--resume", options->resume,
-                   "Continue where an interrupted run of the same options ended");
+  command
+      .add_option("--table", options->table,
+                  "Only write the table for --quality auto of this machine")
+      ->option_text("FILE");
+  command.add_flag("--no-count", options->no_count,
+                   "Compare times only, without instruction counts");
+  command.add_flag("--resume", options->resume, "Continue an interrupted run of the same options");
+  add_example(command, "thimble study accuracy --axis tessellation velocity",
+              "--table writes the points from which `thimble run --quality auto` chooses, in the\n"
+              "form of app/scene/src/quality/quality_table.inc. Counting instructions takes\n"
+              "minutes.");
   command.callback([options, &exit_code] { exit_code = run_accuracy(*options); });
 }
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/complain.h"
 #include "cli/file_options.h"
+#include "cli/report_error.h"
 #include "cli/study/end_study.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
@@ -23,13 +23,13 @@ struct SweepChoice {
   bool resume = false;
 
   void add_options(CLI::App& command) {
-    command.add_option("--out", out, "Folder for pictures, tables, figures.json and the journal")
+    command.add_option("--out", out, "Folder for results and journal")
+        ->option_text("DIR")
         ->capture_default_str();
-    command.add_option("--jobs", jobs, "Threads in each process; 0: one per core")
+    command.add_option("--jobs", jobs, "Threads per process; 0: one per core")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
-    command.add_flag("--resume", resume,
-                     "Continue where an interrupted run of the same options ended");
+    command.add_flag("--resume", resume, "Continue an interrupted run of the same options");
   }
 };
 
@@ -39,19 +39,19 @@ template <class Run>
 int run_by_sweep(const SweepChoice& choice, const Run& run) {
   const std::atomic<bool>& stop = scene::catch_interrupts();
   const auto team = studies::SweepTeam::join();
-  if (!team) return complain(team.error(), kExitBadInput);
+  if (!team) return report_error(team.error(), kExitBadInput);
   const bool leads = *team == nullptr || (*team)->rank() == 0;
   output::OutputPlan plan;
   if (leads) plan.write_folder("--out", choice.out, {"figures.json"});
-  if (auto begun = plan.begin(); !begun) return complain(begun.error(), kExitBadInput);
+  if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto report = run(
       studies::SweepOptions{
           .folder = choice.out, .jobs = choice.jobs, .resume = choice.resume, .team = team->get()},
       stop);
-  if (!report) return complain(report.error(), kExitBadInput);
+  if (!report) return report_error(report.error(), kExitBadInput);
   if (report->end == studies::SweepEnd::kHelped) return kExitDone;
   if (report->end == studies::SweepEnd::kStopped) {
-    scene::print_format("Stopped early; the same command with --resume continues.\n");
+    scene::print_format("Interrupted. To continue, run the same command with --resume.\n");
     return kExitInterrupted;
   }
   return end_study(report->figures, choice.out);
@@ -65,19 +65,19 @@ void add_stability_options(CLI::App& command, int& exit_code) {
   choice->out = "study-stability";
   choice->add_options(command);
   add_arm_option(command, options->arm_file, "Arm file (app/arms)")->required();
-  command.add_option("--rate", options->rate, "Ticks per second, Hz")
+  command.add_option("--rate", options->rate, "Rate of the servo loop, Hz")
       ->check(CLI::Range(100, 20'000))
       ->capture_default_str();
   command
-      .add_option("--hand", options->hand,
-                  "arm (as its file says), none, or MASS,STIFFNESS,DAMPING (kg, N/m, N s/m)")
+      .add_option("--hand", options->hand, "arm (from its file), none, or values in kg, N/m, N s/m")
+      ->option_text("MASS,STIFFNESS,DAMPING")
       ->capture_default_str();
   command
       .add_option("--direction", options->direction,
-                  "X Y Z in the world, along which the wall stands; else the worst of the "
-                  "base's axes")
+                  "Normal of the wall, world (default: worst base axis)")
+      ->option_text("X Y Z")
       ->expected(3);
-  command.add_flag("--coarse", options->coarse, "Few points: seconds instead of a minute");
+  command.add_flag("--coarse", options->coarse, "Fewer points: seconds instead of a minute");
   command.callback([choice, options, &exit_code] {
     exit_code = run_by_sweep(
         *choice, [&](const studies::SweepOptions& sweep, const std::atomic<bool>& stop) {
@@ -92,10 +92,10 @@ void add_trouble_options(CLI::App& command, int& exit_code) {
   choice->out = "study-trouble";
   choice->add_options(command);
   add_arm_option(command, options->arm_file, "Arm file (app/arms)")->required();
-  command.add_option("--count", options->count, "Scenes")
+  command.add_option("--count", options->count, "Number of random scenes")
       ->check(CLI::Range(1, 100'000'000))
       ->capture_default_str();
-  command.add_option("--seed", options->seed, "Of all scenes")->capture_default_str();
+  command.add_option("--seed", options->seed, "Seed of all random numbers")->capture_default_str();
   command.callback([choice, options, &exit_code] {
     exit_code = run_by_sweep(
         *choice, [&](const studies::SweepOptions& sweep, const std::atomic<bool>& stop) {

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "cli/complain.h"
+#include "cli/report_error.h"
 #include "log/printed_text.h"
 
 namespace thimble::cli {
@@ -10,7 +10,7 @@ namespace thimble::cli {
 ExitCode end_study(const std::vector<session::Figure>& figures, const std::filesystem::path& folder,
                    const std::string& where_to_look) {
   if (const auto written = report::write_figures(figures, folder / "figures.json"); !written) {
-    return complain(written.error(), kExitTrouble);
+    return report_error(written.error(), kExitTrouble);
   }
   scene::print_format("%s\nWritten to %s%s.\n", report::figure_table(figures).c_str(),
                       folder.c_str(), where_to_look.c_str());

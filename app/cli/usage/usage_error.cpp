@@ -198,8 +198,8 @@ std::string refused_value(const CLI::Option* option, const std::string& name,
     return full("there is no " + std::string(message[0] == 'F' ? "file " : "folder ") + value);
   }
   if (message.starts_with("File is actually") || message.starts_with("Directory is actually")) {
-    return full(value +
-                (message[0] == 'F' ? " is a folder; name a file" : " is a file; name a folder"));
+    return full(value + (message[0] == 'F' ? " is a folder, expected a file"
+                                           : " is a file, expected a folder"));
   }
   // Our checks return a sentence; the library's return a description.
   const bool ours = message.find("expected ") != std::string::npos ||
@@ -220,7 +220,7 @@ std::string missing(const CLI::App& command, const CLI::Option* option, const st
 /// Returns the sentence for a command without its required sub-command or arguments.
 std::string incomplete(const CLI::App& command) {
   const auto known = commands_below(command);
-  return fmt::format("`{}` needs a command behind it: {}.{}", call_of(command), joined(known),
+  return fmt::format("`{}` requires a command: {}.{}", call_of(command), joined(known),
                      see_help(command));
 }
 
@@ -279,10 +279,10 @@ std::string unknown_word(const CLI::App& command, const std::string& word) {
     std::vector<std::string> calls;
     add_calls_with(command, name, calls);
     if (!calls.empty()) {
-      return fmt::format("{} is an option of {}, not of `{}`; write it behind the command.{}", name,
+      return fmt::format("{} is an option of {}, not of `{}`. Write it after the command.{}", name,
                          joined(calls, " and "), call, see_help(command));
     }
-    return fmt::format("{} is no option of `{}`.{}{}", name, call,
+    return fmt::format("{} is not an option of `{}`.{}{}", name, call,
                        option_suggestion(name, options_of(command)), see_help(command));
   }
   const auto known = commands_below(command);
@@ -291,10 +291,10 @@ std::string unknown_word(const CLI::App& command, const std::string& word) {
       std::any_of(options.begin(), options.end(),
                   [](const CLI::Option* option) { return option->get_positional(); });
   if (!known.empty() && !takes_arguments) {
-    return fmt::format("{} is no command of `{}`.{} Known: {}.{}", word, call,
+    return fmt::format("{} is not a command of `{}`.{} Commands: {}.{}", word, call,
                        suggestion(word, known), joined(known, " and "), see_help(command));
   }
-  return fmt::format("\"{}\" is one argument too many for `{}`.{}{}", word, call,
+  return fmt::format("\"{}\" is an unexpected argument of `{}`.{}{}", word, call,
                      suggestion(word, options_of(command)), see_help(command));
 }
 
@@ -316,18 +316,18 @@ std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
     if (const std::size_t list = message.find('['); list != std::string::npos) {
       auto names = split(message.substr(list + 1, message.rfind(']') - list - 1), ",");
       std::erase(names, "");  // options that only show help
-      return fmt::format("`{}` needs {}.{}", call_of(command), joined(names), see_help(command));
+      return fmt::format("`{}` requires {}.{}", call_of(command), joined(names), see_help(command));
     }
     return missing(command, find_option(command, name), name);
   }
   if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr) {
     const std::string name = before(message, " requires ");
-    return fmt::format("{} needs {}: add it.{}", name, message.substr(name.size() + 10),
+    return fmt::format("{} requires {}. Add it.{}", name, message.substr(name.size() + 10),
                        see_help(command));
   }
   if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr) {
     const std::string name = before(message, " excludes ");
-    return fmt::format("{} and {} do not go together; remove one of them.{}", name,
+    return fmt::format("{} cannot be used with {}. Remove one of them.{}", name,
                        message.substr(name.size() + 10), see_help(command));
   }
   if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) {
@@ -352,14 +352,14 @@ std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
       const Expectation expected = expectation_of(*option);
       const int count = option->get_items_expected_min();
       if (count == 1 && option->results().size() > 1) {
-        return fmt::format("{}: given {} times; give it once.{}", name, option->results().size(),
+        return fmt::format("{}: expected once, found {} times.{}", name, option->results().size(),
                            see_help(command));
       }
       return fmt::format(
           "{}: {}.{}", name,
           count > 1 || !option->results().empty()
               ? fmt::format("expected {} values, found {}", count, option->results().size())
-              : "its value is missing" +
+              : "the value is missing" +
                     (expected.words.empty() ? std::string() : "; expected " + expected.words),
           see_help(command));
     }
@@ -391,9 +391,7 @@ void check_texts(CLI::App& program) {
     if (option->get_items_expected_max() == 0) continue;  // a flag
     option->check(CLI::Validator(
         [](const std::string& text) {
-          return text.empty() ? std::string(
-                                    "its value is empty; leave the option out if none is "
-                                    "meant")
+          return text.empty() ? std::string("the value is empty. Add a value, or remove the option")
                               : std::string();
         },
         ""));

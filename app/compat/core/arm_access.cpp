@@ -34,8 +34,8 @@ struct OwnArm {
 };
 
 // Never destroyed: threads of the program may use it while it exits.
-std::array<OwnArm, kArmsMost>& own_arms() {
-  static auto& all = *new std::array<OwnArm, kArmsMost>;
+std::array<OwnArm, kArmsMax>& own_arms() {
+  static auto& all = *new std::array<OwnArm, kArmsMax>;
   return all;
 }
 
@@ -55,7 +55,7 @@ const char* this_thread() noexcept {
 }
 
 bool is_number(int arm) noexcept {
-  return arm >= 0 && arm < kArmsMost;
+  return arm >= 0 && arm < kArmsMax;
 }
 
 /// Returns the channel of an arm opened here; null if it is not open.
@@ -107,7 +107,7 @@ void permit(ArmChannel& arm, std::uint32_t ticks) noexcept {
 /// Returns the first arm from `first` that is opened here and whose ticks wait for the program; -1:
 /// none.
 int paced_arm(int first = 0) noexcept {
-  for (int arm = first; arm < kArmsMost; ++arm) {
+  for (int arm = first; arm < kArmsMax; ++arm) {
     const ArmChannel* channel = channel_of(arm);
     if (channel != nullptr && channel->paced.load() != 0 &&
         channel->state.load() == ChannelState::kOpen) {
@@ -143,7 +143,7 @@ bool wait_until(int number, Done done) noexcept {
 
 /// Claims an arm for this program before it writes anything of the arm. Of two programs that do so
 /// at once, one gets it and the other changes nothing.
-bool win(int number, const ArmChannel& arm) noexcept {
+bool claim_arm(int number, const ArmChannel& arm) noexcept {
   constexpr std::int64_t kPause_ns = 10'000'000;
   constexpr int kLooks = 200;  // 2 s: the server closes a dead program's arm meanwhile
   for (int look = 0; look < kLooks; ++look) {
@@ -156,14 +156,14 @@ bool win(int number, const ArmChannel& arm) noexcept {
   return false;
 }
 
-void give_up(int number) noexcept {
+void release_arm(int number) noexcept {
   driver::unlock_byte(channel_file(), kFirstOwnerByte + number);
 }
 
 /// Requests an arm claimed by this program from the server, and waits for its answer: empty, or the
 /// problem.
-std::string ask_for(Channel& channel, ArmChannel& arm, const char* face) {
-  copy_text(arm.face, face);
+std::string request_arm(Channel& channel, ArmChannel& arm, const char* api) {
+  copy_text(arm.api, api);
   // Settings of an earlier program are reset.
   arm.enabled.store(0);
   arm.watchdog_ns.store(0);
@@ -205,7 +205,7 @@ int count() noexcept {
   return channel == nullptr ? 0 : channel->arm_count;
 }
 
-std::string open(int arm, const char* face) {
+std::string open(int arm, const char* api) {
   std::string trouble;
   Channel* channel = open_channel(&trouble);
   if (channel == nullptr) return trouble;
@@ -219,16 +219,16 @@ std::string open(int arm, const char* face) {
     return {};
   }
   ArmChannel& shared = channel->arms[static_cast<std::size_t>(arm)];
-  if (!win(arm, shared)) {
+  if (!claim_arm(arm, shared)) {
     return is_server_alive() ? "Another program of this `thimble exec` already uses this arm."
                              : "The `thimble exec` that started this program has ended.";
   }
-  trouble = ask_for(*channel, shared, face);
+  trouble = request_arm(*channel, shared, api);
   if (trouble.empty()) {
     own_arm.number = shared.taken.load();
     own_arm.opened.store(1, std::memory_order_release);
   } else {
-    give_up(arm);
+    release_arm(arm);
   }
   return trouble;
 }
@@ -241,7 +241,7 @@ bool close(int arm) noexcept {
   shared->enabled.store(0);
   if (shared->state.exchange(ChannelState::kLeaving) == ChannelState::kEnded) {
     shared->state.store(ChannelState::kClosed);  // its run has ended by itself
-    give_up(arm);
+    release_arm(arm);
     return true;
   }
   Channel* channel = open_channel();
@@ -251,7 +251,7 @@ bool close(int arm) noexcept {
   while (shared->state.load() == ChannelState::kLeaving && is_server_alive()) {
     wait_while(shared->state, ChannelState::kLeaving, kLook_ns);
   }
-  give_up(arm);
+  release_arm(arm);
   return true;
 }
 
@@ -294,7 +294,7 @@ bool wait_for_tick(int arm, std::uint64_t tick) noexcept {
   });
 }
 
-bool ask_force(int arm, const ForceAsked& asked) noexcept {
+bool ask_force(int arm, const ForceRequest& asked) noexcept {
   ArmChannel* channel = channel_of(arm);
   if (channel == nullptr) return false;
   OwnArm& own_arm = own(arm);
@@ -305,10 +305,10 @@ bool ask_force(int arm, const ForceAsked& asked) noexcept {
   // NaN counts as nonzero.
   const auto acts = [](double value) { return !(value == 0); };
   if (std::any_of(asked.torque_W.begin(), asked.torque_W.end(), acts)) {
-    open_channel()->torques_asked.fetch_add(1, std::memory_order_relaxed);
+    open_channel()->torque_requests.fetch_add(1, std::memory_order_relaxed);
   }
   if (acts(asked.gripper)) {
-    open_channel()->grippers_asked.fetch_add(1, std::memory_order_relaxed);
+    open_channel()->gripper_requests.fetch_add(1, std::memory_order_relaxed);
   }
   return true;
 }
@@ -395,13 +395,13 @@ void wrong_call(const char* function, const char* what) noexcept {
   static std::mutex& mutex = *new std::mutex;
   const std::lock_guard lock(mutex);
   const std::uint32_t used = channel->wrong_calls_used.load();
-  for (std::uint32_t i = 0; i < used && i < Channel::kWrongCallsMost; ++i) {
+  for (std::uint32_t i = 0; i < used && i < Channel::kWrongCallsMax; ++i) {
     WrongCall& call = channel->wrong_calls[i];
     if (std::strncmp(call.function.data(), function, call.function.size() - 1) != 0) continue;
     call.count.fetch_add(1);
     return;
   }
-  if (used >= Channel::kWrongCallsMost) return;
+  if (used >= Channel::kWrongCallsMax) return;
   WrongCall& call = channel->wrong_calls[used];
   copy_text(call.function, function);
   copy_text(call.what, what);

@@ -22,7 +22,7 @@ int count() noexcept;
 /// Opens an arm, or opens it once more if it is open, and starts its loop. Its force is off until
 /// `enable_force`. `face`: name of the interface for the report ("HDAPI"). Returns an empty text,
 /// or the problem and its remedy. Waits until the arm is open.
-std::string open(int arm, const char* face);
+std::string open(int arm, const char* api);
 /// Closes an arm. After as many calls as `open`, its force goes to zero and it may be opened again.
 /// Returns false if it was not open.
 bool close(int arm) noexcept;
@@ -46,7 +46,7 @@ bool wait_for_tick(int arm, std::uint64_t tick) noexcept;
 
 /// Requests a force from the next tick until the next request. It must be renewed at least every
 /// `ArmFacts::stall_ns` (or `set_watchdog`), otherwise it counts as zero.
-bool ask_force(int arm, const ForceAsked& asked) noexcept;
+bool ask_force(int arm, const ForceRequest& asked) noexcept;
 /// Waits until a tick has taken the last requested force. This paces the loop of the program. If
 /// there will be no tick, returns false after a sleep of one period.
 bool wait_until_taken(int arm) noexcept;

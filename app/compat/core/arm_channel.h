@@ -37,7 +37,7 @@ enum class ChannelState : std::uint32_t {
 
 /// A force written by the program.
 struct ForceWritten {
-  ForceAsked asked;          ///< The requested force.
+  ForceRequest asked;        ///< The requested force.
   std::uint64_t number = 0;  ///< Incremented with each; 0: none yet.
 };
 
@@ -45,7 +45,7 @@ struct ForceWritten {
 struct ArmChannel {
   std::array<char, 64> name{};                             ///< Name passed to `thimble exec`.
   std::atomic<ChannelState> state{ChannelState::kClosed};  ///< A futex.
-  std::array<char, 32> face{};                             ///< The compatibility library used.
+  std::array<char, 32> api{};                              ///< The compatibility library used.
   std::array<char, 1024> trouble{};                        ///< Reason of kFailed.
   ArmFacts facts;                                          ///< Written while it is not open.
 
@@ -74,17 +74,18 @@ struct WrongCall {
 
 /// The whole channel.
 struct Channel {
-  static constexpr std::size_t kWrongCallsMost = 64;  ///< Functions with separate counts.
+  static constexpr std::size_t kWrongCallsMax = 64;  ///< Functions with separate counts.
 
   /// channel_layout_hash() (channel_layout.h) once the rest is ready; always the first member.
   std::atomic<std::uint64_t> layout{0};
-  std::int32_t arm_count = 0;              ///< 1 to kArmsMost.
+  std::int32_t arm_count = 0;              ///< 1 to kArmsMax.
   std::atomic<std::uint32_t> requests{0};  ///< A futex; incremented with each request.
-  std::array<ArmChannel, kArmsMost> arms;
+  std::array<ArmChannel, kArmsMax> arms;
   std::atomic<std::uint32_t> wrong_calls_used{0};
-  std::array<WrongCall, kWrongCallsMost> wrong_calls;
-  std::atomic<std::uint64_t> torques_asked{0};   ///< Forces with a torque, which is ignored.
-  std::atomic<std::uint64_t> grippers_asked{0};  ///< Forces with a gripper force, which is ignored.
+  std::array<WrongCall, kWrongCallsMax> wrong_calls;
+  std::atomic<std::uint64_t> torque_requests{0};  ///< Forces with a torque, which is ignored.
+  std::atomic<std::uint64_t> gripper_requests{
+      0};  ///< Forces with a gripper force, which is ignored.
 };
 
 }  // namespace thimble::compat

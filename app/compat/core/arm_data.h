@@ -12,7 +12,7 @@ namespace thimble::compat {
 // World: x to the user, y to the user's right, z up. Frames: W world, T tip.
 
 /// Maximum number of arms that a program may have open.
-inline constexpr int kArmsMost = 4;
+inline constexpr int kArmsMax = 4;
 
 /// Mechanism of an arm.
 enum class ArmBuild : std::uint8_t {
@@ -76,7 +76,7 @@ struct ArmReading {
 };
 
 /// A program's request to an arm.
-struct ForceAsked {
+struct ForceRequest {
   std::array<double, 3> f_W{};       ///< Force on the hand, N. If not finite: a fault of the gate.
   std::array<double, 3> torque_W{};  ///< N m; counted in the report and otherwise ignored.
   double gripper = 0;                ///< Gripper force, N; likewise ignored.

@@ -14,14 +14,14 @@ THIMBLE_LAYOUT(thimble::compat::GateCuts, limited, rise_limited, soft_started, d
 THIMBLE_LAYOUT(thimble::compat::ArmReading, tick, time_ns, p_WT, v_WT, R_WT, w_WT, q, J_WT, gimbal,
                gripper, counts, buttons, f_client_W, f_asked_W, f_sent_W, heat, cuts, stalled,
                stage, fault, link)
-THIMBLE_LAYOUT(thimble::compat::ForceAsked, f_W, torque_W, gripper)
+THIMBLE_LAYOUT(thimble::compat::ForceRequest, f_W, torque_W, gripper)
 THIMBLE_LAYOUT(thimble::compat::ForceWritten, asked, number)
-THIMBLE_LAYOUT(thimble::compat::ArmChannel, name, state, face, trouble, facts, reading, ticks,
+THIMBLE_LAYOUT(thimble::compat::ArmChannel, name, state, api, trouble, facts, reading, ticks,
                waiting, taken, paced, permitted, force, enabled, enablings, watchdog_ns,
                speed_limit, force_limit, calibrated)
 THIMBLE_LAYOUT(thimble::compat::WrongCall, function, what, count)
 THIMBLE_LAYOUT(thimble::compat::Channel, layout, arm_count, requests, arms, wrong_calls_used,
-               wrong_calls, torques_asked, grippers_asked)
+               wrong_calls, torque_requests, gripper_requests)
 
 namespace thimble::compat {
 

@@ -15,9 +15,9 @@
 namespace {
 
 // Switches the terminal to single keys during its lifetime.
-class KeyByKey {
+class SingleKeyMode {
  public:
-  KeyByKey() noexcept {
+  SingleKeyMode() noexcept {
     if (!isatty(STDIN_FILENO) || tcgetattr(STDIN_FILENO, &before_) != 0) return;
     termios keys = before_;
     keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
@@ -25,11 +25,11 @@ class KeyByKey {
     keys.c_cc[VTIME] = 0;
     changed_ = tcsetattr(STDIN_FILENO, TCSANOW, &keys) == 0;
   }
-  ~KeyByKey() {
+  ~SingleKeyMode() {
     if (changed_) tcsetattr(STDIN_FILENO, TCSANOW, &before_);
   }
-  KeyByKey(const KeyByKey&) = delete;
-  KeyByKey& operator=(const KeyByKey&) = delete;
+  SingleKeyMode(const SingleKeyMode&) = delete;
+  SingleKeyMode& operator=(const SingleKeyMode&) = delete;
 
  private:
   termios before_{};
@@ -62,12 +62,12 @@ void drdSleep(double seconds) {
 }
 
 bool dhdKbHit(void) {
-  const KeyByKey keys;
+  const SingleKeyMode keys;
   return key_waits(0);
 }
 
 char dhdKbGet(void) {
-  const KeyByKey keys;
+  const SingleKeyMode keys;
   char key = 0;
   ssize_t got;
   do {

@@ -126,7 +126,7 @@ int drdPrecisionInit(char id) {
 int drdStart(char id) {
   OpenArm* arm = open_arm("drdStart", id);
   if (!arm) return -1;
-  if (!switch_on_if_untold(*arm)) {
+  if (!enable_force_if_unset(*arm)) {
     return fail("drdStart", DHD_ERROR_NOT_ENABLED, "force is disabled");
   }
   if (!arm->regulator.start(arm->number))
@@ -141,7 +141,7 @@ int drdStop(bool leave_force_on, char id) {
   // After drdStop switched the force off, drdStart or the next force may switch it on.
   if (!leave_force_on && arm->force == ForceSwitch::kOn) {
     switch_off(*arm, kOffBySoftware);
-    arm->force = ForceSwitch::kUntold;
+    arm->force = ForceSwitch::kUnset;
   }
   return 0;
 }

@@ -12,7 +12,7 @@
 namespace thimble::compat::dhd {
 namespace {
 
-constexpr double kVibrationMost = 500;  // Hz: half the rate of a loop of 1 kHz
+constexpr double kVibrationMax = 500;  // Hz: half the rate of a loop of 1 kHz
 
 std::array<double, 3> array_of(const Eigen::Vector3d& v) noexcept {
   return {v.x(), v.y(), v.z()};
@@ -33,7 +33,7 @@ int send_force(const char* function, OpenArm& arm, const Eigen::Vector3d& f_U,
   ArmReading reading;
   if (!read_arm(function, arm, reading)) return -1;
   latch_watchdog(arm, reading);
-  switch_on_if_untold(arm);
+  enable_force_if_unset(arm);
   const Eigen::Matrix3d R_WU = user_rotation(arm).transpose();
   Eigen::Vector3d f_W = R_WU * f_U;
   if (const double amplitude = arm.vibration_amplitude; amplitude != 0) {
@@ -43,7 +43,8 @@ int send_force(const char* function, OpenArm& arm, const Eigen::Vector3d& f_U,
   const bool finite = f_W.allFinite() && torque_U.allFinite() && std::isfinite(gripper);
   if (arm.force != ForceSwitch::kOn && finite)
     f_W.setZero();  // as if the arm's force switch were off
-  ForceAsked asked{.f_W = array_of(f_W), .torque_W = array_of(R_WU * torque_U), .gripper = gripper};
+  ForceRequest asked{
+      .f_W = array_of(f_W), .torque_W = array_of(R_WU * torque_U), .gripper = gripper};
   if (!finite) {
     // The gate treats NaN as a fault and latches it: a program with such a force is wrong.
     asked = {.f_W = {std::nan(""), std::nan(""), std::nan("")}};
@@ -57,9 +58,9 @@ int send_force(const char* function, OpenArm& arm, const Eigen::Vector3d& f_U,
   }
   arm.force_sent = true;
   if (!finite) return fail(function, DHD_ERROR_INVALID, "the force is not finite");
-  double most = arms::facts(arm.number).force_max;
-  if (const double told = arm.max_force; told >= 0) most = std::min(most, told);
-  return f_W.norm() > most ? DHD_MOTOR_SATURATED : 0;
+  double max_force = arms::facts(arm.number).force_max;
+  if (const double own = arm.max_force; own >= 0) max_force = std::min(max_force, own);
+  return f_W.norm() > max_force ? DHD_MOTOR_SATURATED : 0;
 }
 
 }  // namespace thimble::compat::dhd
@@ -126,7 +127,7 @@ int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double 
 int dhdSetVibration(double frequency, double amplitude, int, char id) {
   OpenArm* arm = open_arm("dhdSetVibration", id);
   if (!arm) return -1;
-  if (!(frequency >= 0 && frequency <= kVibrationMost) || !std::isfinite(amplitude)) {
+  if (!(frequency >= 0 && frequency <= kVibrationMax) || !std::isfinite(amplitude)) {
     return fail("dhdSetVibration", DHD_ERROR_INVALID, "expected 0 to 500 Hz and a finite force");
   }
   arm->vibration_frequency = frequency;

@@ -38,8 +38,8 @@ OpenArm* arm_with_joints(const char* function, char id, bool pointers,
 }
 
 bool solvable(const Eigen::Matrix3d& J) noexcept {
-  const double most = J.col(0).norm() * J.col(1).norm() * J.col(2).norm();
-  return std::abs(J.determinant()) > kSingular * most;
+  const double max_determinant = J.col(0).norm() * J.col(1).norm() * J.col(2).norm();
+  return std::abs(J.determinant()) > kSingular * max_determinant;
 }
 
 int not_available(const char* function, char id, const char* what) noexcept {

@@ -11,10 +11,10 @@ namespace {
 
 struct Table {
   Table() {
-    for (int i = 0; i < kArmsMost; ++i) arms[static_cast<std::size_t>(i)].number = i;
+    for (int i = 0; i < kArmsMax; ++i) arms[static_cast<std::size_t>(i)].number = i;
   }
-  std::mutex opening;                   // serialises opening and closing
-  std::array<OpenArm, kArmsMost> arms;  // one entry for each possible arm of `thimble exec`
+  std::mutex opening;                  // serialises opening and closing
+  std::array<OpenArm, kArmsMax> arms;  // one entry for each possible arm of `thimble exec`
   std::atomic<int> chosen{-1};
 };
 
@@ -25,8 +25,8 @@ Table& table() noexcept {
 }
 
 // A program's settings of an arm are valid while it is open.
-void forget(OpenArm& arm) noexcept {
-  arm.force = ForceSwitch::kUntold;
+void reset_settings(OpenArm& arm) noexcept {
+  arm.force = ForceSwitch::kUnset;
   arm.off_cause = kOffBySoftware;
   arm.force_sent = false;
   arm.gravity = false;
@@ -56,7 +56,7 @@ OpenArm* open_arm(const char* function, char id) noexcept {
       return nullptr;
     }
   }
-  if (number < 0 || number >= kArmsMost) {
+  if (number < 0 || number >= kArmsMax) {
     fail(function, DHD_ERROR_INVALID_INDEX, "no arm has this number");
     return nullptr;
   }
@@ -75,14 +75,14 @@ int open_number(const char* function, int number) noexcept {
   if (arms::count() == 0) {
     return fail(function, DHD_ERROR_NO_DEVICE_FOUND, "the program was not started by thimble exec");
   }
-  if (number < 0 || number >= arms::count() || number >= kArmsMost) {
+  if (number < 0 || number >= arms::count() || number >= kArmsMax) {
     return fail(function, DHD_ERROR_INVALID_INDEX, "no arm has this number");
   }
   OpenArm& arm = table().arms[static_cast<std::size_t>(number)];
   if (!arm.open) {
     const std::string wrong = arms::open(number, "DHD");
     if (!wrong.empty()) return fail(function, DHD_ERROR_DEVICE_NOT_READY, wrong.c_str());
-    forget(arm);
+    reset_settings(arm);
     arm.open = true;
   }
   table().chosen = number;
@@ -127,12 +127,12 @@ Eigen::Matrix3d user_rotation(const OpenArm& arm) noexcept {
       .toRotationMatrix();
 }
 
-bool switch_on_if_untold(OpenArm& arm) noexcept {
-  ForceSwitch untold = ForceSwitch::kUntold;
-  if (arm.force.compare_exchange_strong(untold, ForceSwitch::kOn)) {
+bool enable_force_if_unset(OpenArm& arm) noexcept {
+  ForceSwitch unset = ForceSwitch::kUnset;
+  if (arm.force.compare_exchange_strong(unset, ForceSwitch::kOn)) {
     arm.force_sent = false;
     if (!arms::enable_force(arm.number, true)) {
-      arm.force = ForceSwitch::kUntold;
+      arm.force = ForceSwitch::kUnset;
       return false;
     }
   }

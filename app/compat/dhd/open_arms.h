@@ -14,9 +14,9 @@ namespace thimble::compat::dhd {
 
 /// State of an arm's force: on, off, or never set by the program.
 enum class ForceSwitch : std::uint8_t {
-  kUntold,  ///< Never set by the program: its first force enables it.
-  kOn,      ///< The force is on.
-  kOff,     ///< The program or its watchdog switched it off: dhdEnableForce switches it on.
+  kUnset,  ///< Never set by the program: its first force enables it.
+  kOn,     ///< The force is on.
+  kOff,    ///< The program or its watchdog switched it off: dhdEnableForce switches it on.
 };
 
 /// Causes of a force that is off, as dhdGetStatus returns them.
@@ -31,10 +31,10 @@ enum ForceOffCause : int {
 /// An arm that a program opened, with the program's settings. Any thread may read and set its
 /// numbers.
 struct OpenArm {
-  int number = 0;                                        ///< Number of the arm in `arms`.
-  std::atomic<bool> open{false};                         ///< Between dhdOpen and dhdClose.
-  std::atomic<ForceSwitch> force{ForceSwitch::kUntold};  ///< State of its force.
-  std::atomic<int> off_cause{kOffBySoftware};            ///< While `force` is kOff.
+  int number = 0;                                       ///< Number of the arm in `arms`.
+  std::atomic<bool> open{false};                        ///< Between dhdOpen and dhdClose.
+  std::atomic<ForceSwitch> force{ForceSwitch::kUnset};  ///< State of its force.
+  std::atomic<int> off_cause{kOffBySoftware};           ///< While `force` is kOff.
   std::atomic<bool> force_sent{false};          ///< A force was requested since it was enabled.
   std::atomic<bool> gravity{false};             ///< Stored and returned; see README.md.
   std::atomic<bool> brakes{true};               ///< As above.
@@ -85,7 +85,7 @@ inline Eigen::Matrix3d matrix_of(const std::array<double, 9>& rows) noexcept {
 bool expert_mode() noexcept;
 
 /// Enables the force of an arm if it was never set. False: it stays off.
-bool switch_on_if_untold(OpenArm& arm) noexcept;
+bool enable_force_if_unset(OpenArm& arm) noexcept;
 /// Switches the force of an arm off, for this cause.
 void switch_off(OpenArm& arm, ForceOffCause cause) noexcept;
 

@@ -14,8 +14,8 @@ namespace {
 
 // Programs choose their limits by the type; THIMBLE_DHD_TYPE overrides the default.
 int type_of(const char* name) noexcept {
-  if (const char* told = std::getenv("THIMBLE_DHD_TYPE")) {
-    const long type = std::strtol(told, nullptr, 10);
+  if (const char* text = std::getenv("THIMBLE_DHD_TYPE")) {
+    const long type = std::strtol(text, nullptr, 10);
     if (type > 0 && type < 256) return static_cast<int>(type);
   }
   return std::string_view(name) == "falcon" ? DHD_DEVICE_FALCON : DHD_DEVICE_CUSTOM;

@@ -27,8 +27,8 @@ struct Gains {
 };
 Gains gains_of(const ArmFacts& facts) noexcept {
   const double damping = facts.damping_max > 0 ? facts.damping_max / 2 : 0.5;
-  const double most = damping * facts.rate / 2.5;
-  return {std::min(facts.stiffness_max / 2, most), damping};
+  const double max_stiffness = damping * facts.rate / 2.5;
+  return {std::min(facts.stiffness_max / 2, max_stiffness), damping};
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ void Regulator::stop() noexcept {
   if (thread_.joinable()) thread_.join();
 }
 
-void Regulator::set_free_force(const ForceAsked& asked) noexcept {
+void Regulator::set_free_force(const ForceRequest& asked) noexcept {
   const std::lock_guard lock(mutex_);
   free_ = asked;
 }
@@ -123,13 +123,14 @@ void Regulator::advance(double dt) noexcept {
       std::min(track_bounds_.speed, std::sqrt(2 * track_bounds_.acceleration * distance));
   Eigen::Vector3d change = -speed_W_;
   if (distance > 0) change += std::min(speed, distance / dt) / distance * left;
-  const double most = track_bounds_.acceleration * dt;
-  if (change.norm() > most) change *= most / change.norm();
+  const double max_change = track_bounds_.acceleration * dt;
+  if (change.norm() > max_change) change *= max_change / change.norm();
   speed_W_ += change;
   point_W_ += speed_W_ * dt;
 }
 
-ForceAsked Regulator::force(const ArmFacts& facts, const ArmReading& reading, double dt) noexcept {
+ForceRequest Regulator::force(const ArmFacts& facts, const ArmReading& reading,
+                              double dt) noexcept {
   const Eigen::Vector3d p_W = vector_of(reading.p_WT), v_W = vector_of(reading.v_WT);
   const std::lock_guard lock(mutex_);
   if (hold_here_ || !regulates_) {
@@ -147,8 +148,8 @@ ForceAsked Regulator::force(const ArmFacts& facts, const ArmReading& reading, do
   }
   const Gains gains = gains_of(facts);
   Eigen::Vector3d f_W = gains.stiffness * (point_W_ - p_W) - gains.damping * v_W;
-  const double most = force_ratio_ * facts.force_max;
-  if (f_W.norm() > most) f_W *= most / f_W.norm();
+  const double max_force = force_ratio_ * facts.force_max;
+  if (f_W.norm() > max_force) f_W *= max_force / f_W.norm();
   return {.f_W = {f_W.x(), f_W.y(), f_W.z()}};
 }
 

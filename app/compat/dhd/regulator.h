@@ -34,7 +34,7 @@ class Regulator {
   /// Returns whether the tip is held.
   bool regulates() const noexcept { return regulates_; }
   /// Sets the force (N) for a released tip; torque and gripper are counted.
-  void set_free_force(const ForceAsked& asked) noexcept;
+  void set_free_force(const ForceRequest& asked) noexcept;
 
   /// Moves the tip in a straight line to a point (m), instead of the current motion.
   void move_to(const Eigen::Vector3d& goal_W) noexcept;
@@ -65,7 +65,7 @@ class Regulator {
   enum class Mode : std::uint8_t { kHold, kMove, kTrack };
 
   void run(int arm) noexcept;
-  ForceAsked force(const ArmFacts& facts, const ArmReading& reading, double dt) noexcept;
+  ForceRequest force(const ArmFacts& facts, const ArmReading& reading, double dt) noexcept;
   void advance(double dt) noexcept;
 
   std::mutex starting_;  // for start and stop
@@ -82,7 +82,7 @@ class Regulator {
   StraightPath path_;
   double path_time_ = 0;
   PathBounds move_bounds_, track_bounds_;
-  ForceAsked free_;
+  ForceRequest free_;
 };
 
 }  // namespace thimble::compat::dhd

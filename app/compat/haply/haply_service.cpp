@@ -34,14 +34,14 @@ namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::size_t kMessageMost = 256 * 1024;     // bytes; typical are some hundreds
-constexpr std::size_t kProgramsMost = 16;            // simultaneous programs [chosen]
-constexpr auto kPatience = std::chrono::seconds(1);  // for a client that sends no request
+constexpr std::size_t kMessageMax = 256 * 1024;            // bytes; typical are some hundreds
+constexpr std::size_t kProgramsMax = 16;                   // simultaneous programs [chosen]
+constexpr auto kRequestTimeout = std::chrono::seconds(1);  // for a client that sends no request
 constexpr auto kPause = std::chrono::milliseconds(1);
 
 /// Returns whether the client is a program of this computer and not a web page of another: browsers
 /// send the page's origin, programs send none.
-bool is_of_here(std::string_view origin) {
+bool is_local_origin(std::string_view origin) {
   if (origin.empty()) return true;
   const std::size_t scheme = origin.find("://");
   if (scheme == std::string_view::npos) return false;
@@ -72,7 +72,7 @@ class Program {
   }
 
   /// Returns why the program is refused, as a phrase; empty: it is accepted.
-  std::string distrust() { return driver::distrust_of_peer(socket().native_handle()); }
+  std::string refusal_reason() { return driver::distrust_of_peer(socket().native_handle()); }
 
   void begin(ServedArms& arms) {
     thread_ = std::thread([this, &arms] {
@@ -107,22 +107,22 @@ class Program {
 
   bool greet() {
     http::request<http::string_body> request;
-    stream_.next_layer().expires_after(kPatience);
+    stream_.next_layer().expires_after(kRequestTimeout);
     if (!run([&](auto done) { http::async_read(stream_.next_layer(), buffer_, request, done); })) {
       return false;
     }
     const auto origin = request[http::field::origin];
-    if (!websocket::is_upgrade(request) || !is_of_here({origin.data(), origin.size()})) {
+    if (!websocket::is_upgrade(request) || !is_local_origin({origin.data(), origin.size()})) {
       refuse(websocket::is_upgrade(request) ? http::status::forbidden
                                             : http::status::upgrade_required);
       return false;
     }
     stream_.next_layer().expires_never();
     stream_.set_option(
-        websocket::stream_base::timeout{.handshake_timeout = kPatience,
+        websocket::stream_base::timeout{.handshake_timeout = kRequestTimeout,
                                         .idle_timeout = websocket::stream_base::none(),
                                         .keep_alive_pings = false});
-    stream_.read_message_max(kMessageMost);
+    stream_.read_message_max(kMessageMax);
     stream_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
       response.set(http::field::server, std::string(kServerName) + " " + THIMBLE_VERSION);
     }));
@@ -206,14 +206,14 @@ class Service::Listener {
         std::this_thread::sleep_for(kPause);  // too many open files, for example
         continue;
       }
-      if (const std::string stranger = one.front().distrust(); !stranger.empty()) {
+      if (const std::string stranger = one.front().refusal_reason(); !stranger.empty()) {
         refuse(stranger);
         continue;
       }
       const std::lock_guard lock(mutex_);
       programs_.remove_if([](const Program& program) { return program.done(); });
       if (leaves_.load(std::memory_order_acquire)) break;
-      if (programs_.size() >= kProgramsMost) continue;
+      if (programs_.size() >= kProgramsMax) continue;
       came_.fetch_add(1, std::memory_order_relaxed);
       one.front().begin(arms_);
       programs_.splice(programs_.end(), one);

@@ -19,12 +19,12 @@ std::string ServedArms::answer(int session, std::string_view text) {
   for (const WrongPart& wrong : request.wrong) arms::wrong_call(wrong.command, wrong.what);
   for (const ForceCommand& command : request.forces) {
     bool known = false;
-    for (int number = 0; number < kArmsMost; ++number) {
+    for (int number = 0; number < kArmsMax; ++number) {
       known = known || (is_open(number) && command.device_id == device_id_of(number));
     }
     if (!known) arms::wrong_call("device_id", "no arm has this name");
   }
-  for (int number = 0; number < kArmsMost; ++number) {
+  for (int number = 0; number < kArmsMax; ++number) {
     if (!is_open(number)) continue;
     ArmReading before;
     arms::read(number, before);
@@ -38,7 +38,7 @@ std::string ServedArms::answer(int session, std::string_view text) {
 }
 
 void ServedArms::leave(int session) {
-  for (int number = 0; number < kArmsMost; ++number) {
+  for (int number = 0; number < kArmsMax; ++number) {
     Arm& arm = arms_[static_cast<std::size_t>(number)];
     const std::lock_guard lock(arm.mutex);
     if (!arm.open || arm.sessions.erase(session) == 0) continue;
@@ -48,7 +48,7 @@ void ServedArms::leave(int session) {
 }
 
 void ServedArms::close() {
-  for (int number = 0; number < kArmsMost; ++number) {
+  for (int number = 0; number < kArmsMax; ++number) {
     Arm& arm = arms_[static_cast<std::size_t>(number)];
     const std::lock_guard lock(arm.mutex);
     if (arm.open) arms::close(number);
@@ -92,20 +92,20 @@ void ServedArms::ask_sum(int number, const Arm& arm) const {
 }
 
 std::string ServedArms::message(int session, bool full) {
-  std::vector<ToldArm> told;
-  for (int number = 0; number < kArmsMost; ++number) {
+  std::vector<ReportedArm> reported;
+  for (int number = 0; number < kArmsMax; ++number) {
     Arm& arm = arms_[static_cast<std::size_t>(number)];
     const std::lock_guard lock(arm.mutex);
     if (!arm.open) continue;
-    ToldArm one;
+    ReportedArm one;
     one.device_id = device_id_of(number);
     one.facts = arms::facts(number);
     arms::read(number, one.reading);
     one.ready = arms::is_running(number) && one.reading.fault == driver::Fault::kNone;
     one.in_use = !arm.sessions.empty();
-    told.push_back(std::move(one));
+    reported.push_back(std::move(one));
   }
-  return state_message(told, session, full);
+  return state_message(reported, session, full);
 }
 
 }  // namespace thimble::compat::haply

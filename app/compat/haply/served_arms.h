@@ -52,7 +52,7 @@ class ServedArms {
   void ask_sum(int number, const Arm& arm) const;
   std::string message(int session, bool full);
 
-  std::array<Arm, kArmsMost> arms_;
+  std::array<Arm, kArmsMax> arms_;
 };
 
 }  // namespace thimble::compat::haply

@@ -41,15 +41,15 @@ bool read_vector(const json& from, Eigen::Vector3d& vector) {
 /// Reads the force of a command. Both keys may be present if they agree.
 bool read_force(const json& command, Eigen::Vector3d& f_B) {
   for (const char* spelling : {"vector", "values"}) {
-    const json& told = member(command, spelling);
-    if (!told.is_null()) return read_vector(told, f_B);
+    const json& value = member(command, spelling);
+    if (!value.is_null()) return read_vector(value, f_B);
   }
   return false;
 }
 
 /// Commands of an Inverse3 that are not implemented.
-constexpr const char* kLeftOut[] = {"set_cursor_position", "set_angular_torques",
-                                    "set_angular_position", "set_transform"};
+constexpr const char* kUnsupportedCommands[] = {"set_cursor_position", "set_angular_torques",
+                                                "set_angular_position", "set_transform"};
 
 void read_arm(const json& arm, Request& request) {
   const json& id = member(arm, "device_id");
@@ -58,7 +58,7 @@ void read_arm(const json& arm, Request& request) {
     return;
   }
   const json& commands = member(arm, "commands");
-  for (const char* name : kLeftOut) {
+  for (const char* name : kUnsupportedCommands) {
     if (member(commands, name).is_null()) continue;
     request.wrong.push_back({name, "not supported; only set_cursor_force is"});
   }
@@ -74,15 +74,15 @@ void read_arm(const json& arm, Request& request) {
   }
 }
 
-json told(const Eigen::Vector3d& v) {
+json to_json(const Eigen::Vector3d& v) {
   return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}};
 }
 
-json told(const Eigen::Quaterniond& q) {
+json to_json(const Eigen::Quaterniond& q) {
   return {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}};
 }
 
-json told_angles(const Eigen::Vector3d& angles) {
+json angles_to_json(const Eigen::Vector3d& angles) {
   const Eigen::Vector3d degrees = angles * kDegrees;
   return {{"a0", degrees.x()}, {"a1", degrees.y()}, {"a2", degrees.z()}};
 }
@@ -94,8 +94,8 @@ Eigen::Matrix3d matrix_of(const std::array<double, 9>& rows) {
 /// Returns the joint velocities, rad/s; zeros if the arm is at a singularity or has no joints.
 Eigen::Vector3d joint_speeds(const ArmReading& reading) {
   const Eigen::Matrix3d J_WT = matrix_of(reading.J_WT);
-  constexpr double kLeast = 1e-7;  // m^3; an arm of 0.1 m reaches 1e-3 [chosen]
-  if (!(std::abs(J_WT.determinant()) > kLeast)) return {0, 0, 0};
+  constexpr double kMinDeterminant = 1e-7;  // m^3; an arm of 0.1 m reaches 1e-3 [chosen]
+  if (!(std::abs(J_WT.determinant()) > kMinDeterminant)) return {0, 0, 0};
   return J_WT.inverse() * vector_of(reading.v_WT);
 }
 
@@ -113,20 +113,20 @@ std::string four_digits(unsigned number) {
   return text.data();
 }
 
-json arm_of(const ToldArm& arm, bool full) {
+json arm_of(const ReportedArm& arm, bool full) {
   const ArmReading& now = arm.reading;
   const Eigen::Vector3d zero(0, 0, 0);
   json entry = {{"device_id", arm.device_id},
                 {"state",
-                 {{"cursor_position", told(point_B(vector_of(now.p_WT)))},
-                  {"cursor_velocity", told(direction_B(vector_of(now.v_WT)))},
-                  {"angular_position", told_angles(vector_of(now.q))},
-                  {"angular_velocity", told_angles(joint_speeds(now))},
-                  {"body_orientation", told(Eigen::Quaterniond::Identity())},
-                  {"current_cursor_force", told(direction_B(vector_of(now.f_sent_W)))},
-                  {"current_cursor_position", told(zero)},
-                  {"current_angular_torques", told_angles(zero)},
-                  {"current_angular_position", told_angles(zero)},
+                 {{"cursor_position", to_json(point_B(vector_of(now.p_WT)))},
+                  {"cursor_velocity", to_json(direction_B(vector_of(now.v_WT)))},
+                  {"angular_position", angles_to_json(vector_of(now.q))},
+                  {"angular_velocity", angles_to_json(joint_speeds(now))},
+                  {"body_orientation", to_json(Eigen::Quaterniond::Identity())},
+                  {"current_cursor_force", to_json(direction_B(vector_of(now.f_sent_W)))},
+                  {"current_cursor_position", to_json(zero)},
+                  {"current_angular_torques", angles_to_json(zero)},
+                  {"current_angular_position", angles_to_json(zero)},
                   {"control_domain", "cartesian"},
                   {"control_mode", arm.in_use ? "force" : "idle"}}},
                 {"status",
@@ -147,12 +147,12 @@ json arm_of(const ToldArm& arm, bool full) {
   return entry;
 }
 
-json grip_of(const ToldArm& arm, std::size_t number) {
+json grip_of(const ReportedArm& arm, std::size_t number) {
   const unsigned buttons = arm.reading.buttons;
   json state = {
       {"buttons",
        {{"a", (buttons & 1U) != 0}, {"b", (buttons & 2U) != 0}, {"c", (buttons & 4U) != 0}}}};
-  if (arm.facts.has_orientation) state["orientation"] = told(turned_B(arm.reading));
+  if (arm.facts.has_orientation) state["orientation"] = to_json(turned_B(arm.reading));
   return {{"device_id", four_digits(kGripNumber + static_cast<unsigned>(number) + 1)},
           {"state", std::move(state)}};
 }
@@ -187,10 +187,10 @@ std::string device_id_of(int arm) {
   return four_digits(static_cast<unsigned>(arm) + 1);
 }
 
-std::string state_message(std::span<const ToldArm> arms, int session, bool full) {
+std::string state_message(std::span<const ReportedArm> arms, int session, bool full) {
   json message = {{"inverse3", json::array()}, {"wireless_verse_grip", json::array()}};
   if (full) message["session_id"] = session;
-  for (const ToldArm& arm : arms) {
+  for (const ReportedArm& arm : arms) {
     message["inverse3"].push_back(arm_of(arm, full));
     message["wireless_verse_grip"].push_back(grip_of(arm, message["wireless_verse_grip"].size()));
   }

@@ -41,7 +41,7 @@ struct Request {
 Request read_request(std::string_view text);
 
 /// The state of an arm in a message.
-struct ToldArm {
+struct ReportedArm {
   std::string device_id;  ///< Id in the service.
   ArmFacts facts;         ///< Its properties.
   ArmReading reading;     ///< Its newest tick.
@@ -55,6 +55,6 @@ std::string device_id_of(int arm);
 /// Returns a message with the state of all arms; `full`: with the session and the settings of the
 /// arms. An arm's buttons, and its stylus orientation if known, are reported as those of a wireless
 /// grip.
-std::string state_message(std::span<const ToldArm> arms, int session, bool full);
+std::string state_message(std::span<const ReportedArm> arms, int session, bool full);
 
 }  // namespace thimble::compat::haply

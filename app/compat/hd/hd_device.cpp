@@ -51,23 +51,23 @@ int arm_named(const char* name) {
 }
 
 /// Reports changes of the program's force by the gate as HDAPI errors.
-void look_at_forces(HHD handle, Device& device) noexcept {
+void report_force_errors(HHD handle, Device& device) noexcept {
   const ArmReading& now = device.frame.now;
-  if (now.fault != device.fault_told) {
-    device.fault_told = now.fault;
+  if (now.fault != device.reported_fault) {
+    device.reported_fault = now.fault;
     switch (now.fault) {
       case driver::Fault::kNone:
         break;
       case driver::Fault::kOverSpeed:
-        keep_error(HD_EXCEEDED_MAX_VELOCITY, handle, static_cast<int>(now.fault));
+        record_error(HD_EXCEEDED_MAX_VELOCITY, handle, static_cast<int>(now.fault));
         break;
       case driver::Fault::kTransportLost:
       case driver::Fault::kNoReports:
       case driver::Fault::kRefused:
-        keep_error(HD_COMM_ERROR, handle, static_cast<int>(now.fault));
+        record_error(HD_COMM_ERROR, handle, static_cast<int>(now.fault));
         break;
       default:
-        keep_error(HD_DEVICE_FAULT, handle, static_cast<int>(now.fault));
+        record_error(HD_DEVICE_FAULT, handle, static_cast<int>(now.fault));
     }
   }
   if (now.link != device.link_reported) {
@@ -76,31 +76,32 @@ void look_at_forces(HHD handle, Device& device) noexcept {
     const bool named_by_fault =
         now.fault == driver::Fault::kTransportLost || now.fault == driver::Fault::kNoReports;
     if (now.link == driver::LinkState::kLost && !named_by_fault) {
-      keep_error(HD_COMM_ERROR, handle, static_cast<int>(driver::Fault::kTransportLost));
+      record_error(HD_COMM_ERROR, handle, static_cast<int>(driver::Fault::kTransportLost));
     }
   }
   if (now.tick == device.frame.last.tick) return;
-  if (now.cuts.limited && !device.force_clamping) keep_error(HD_EXCEEDED_MAX_FORCE, handle);
-  if (now.cuts.rise_limited) keep_error(HD_EXCEEDED_MAX_FORCE_IMPULSE, handle);
+  if (now.cuts.limited && !device.force_clamping) record_error(HD_EXCEEDED_MAX_FORCE, handle);
+  if (now.cuts.rise_limited) record_error(HD_EXCEEDED_MAX_FORCE_IMPULSE, handle);
   constexpr double kWarm = 0.8;  // of the winding's limit; the gate's own warning
   const bool warm = *std::max_element(now.heat.begin(), now.heat.end()) >= kWarm;
-  if (warm && !device.warm_told) keep_error(HD_WARM_MOTORS, handle);
-  device.warm_told = warm;
+  if (warm && !device.warm_reported) record_error(HD_WARM_MOTORS, handle);
+  device.warm_reported = warm;
 }
 
 /// Requests a device's force, after HDAPI's clamping and ramping.
 void send(HHD handle, Device& device) noexcept {
-  ForceAsked asked{.f_W = device.frame.f_asked_W, .torque_W = device.frame.torque_asked_W};
+  ForceRequest asked{.f_W = device.frame.f_asked_W, .torque_W = device.frame.torque_asked_W};
   const double length = std::hypot(asked.f_W[0], asked.f_W[1], asked.f_W[2]);
-  double most = length;
-  if (device.force_clamping) most = std::min(most, arms::facts(static_cast<int>(handle)).force_max);
+  double max_force = length;
+  if (device.force_clamping)
+    max_force = std::min(max_force, arms::facts(static_cast<int>(handle)).force_max);
   if (device.force_ramping) {
     const double since = 1e-9 * static_cast<double>(device.frame.now.time_ns - device.enabled_ns);
-    most = std::min(most, device.ramping_rate * std::max(since, 0.0));
+    max_force = std::min(max_force, device.ramping_rate * std::max(since, 0.0));
   }
   // NaN is passed to the gate unchanged.
-  if (most < length) {
-    for (double& f : asked.f_W) f *= most / length;
+  if (max_force < length) {
+    for (double& f : asked.f_W) f *= max_force / length;
   }
   arms::ask_force(static_cast<int>(handle), asked);
 }
@@ -128,13 +129,13 @@ void set_current_device(HHD device) noexcept {
 }
 
 bool is_open(HHD device) noexcept {
-  return device < kArmsMost && devices().all[device].open;
+  return device < kArmsMax && devices().all[device].open;
 }
 
 Device* current_open(const char* function) noexcept {
   const HHD current = current_device();
   if (is_open(current)) return &devices().all[current];
-  keep_wrong_call(HD_BAD_HANDLE, function, "no arm is open and current (hdMakeCurrentDevice)");
+  record_wrong_call(HD_BAD_HANDLE, function, "no arm is open and current (hdMakeCurrentDevice)");
   return nullptr;
 }
 
@@ -146,12 +147,12 @@ ArmReading seen(HHD device) noexcept {
   return newest;
 }
 
-void end_forgotten_frames() noexcept {
+void end_open_frames() noexcept {
   const std::lock_guard lock(devices().mutex);
-  for (HHD handle = 0; handle < kArmsMost; ++handle) {
+  for (HHD handle = 0; handle < kArmsMax; ++handle) {
     Device& device = devices().all[handle];
     if (!device.frame.open || device.frame.owner != std::this_thread::get_id()) continue;
-    keep_error(HD_FRAME_ERROR, handle);
+    record_error(HD_FRAME_ERROR, handle);
     arms::wrong_call("hdBeginFrame", "the frame was still open after the callbacks of the tick");
     end_frame(handle, device);
   }
@@ -166,15 +167,15 @@ extern "C" {
 
 HHD hdInitDevice(HDstring name) {
   const int arm = arm_named(name);
-  if (arm < 0 || arm >= kArmsMost || (arms::count() > 0 && arm >= arms::count())) {
-    keep_wrong_call(HD_COMM_CONFIG_ERROR, __func__, "no arm has this name");
+  if (arm < 0 || arm >= kArmsMax || (arms::count() > 0 && arm >= arms::count())) {
+    record_wrong_call(HD_COMM_CONFIG_ERROR, __func__, "no arm has this name");
     return HD_INVALID_HANDLE;
   }
   const HHD handle = static_cast<HHD>(arm);
   {
     const std::lock_guard lock(devices().mutex);
     if (is_open(handle)) {
-      keep_wrong_call(HD_DEVICE_ALREADY_INITIATED, __func__, "the arm is already open");
+      record_wrong_call(HD_DEVICE_ALREADY_INITIATED, __func__, "the arm is already open");
       return HD_INVALID_HANDLE;
     }
   }
@@ -182,14 +183,14 @@ HHD hdInitDevice(HDstring name) {
   if (!trouble.empty()) {
     // The program itself prints only "failed to initialise".
     std::fprintf(stderr, "thimble: hdInitDevice: %s\n", trouble.c_str());
-    keep_wrong_call(HD_COMM_ERROR, __func__, trouble.c_str());
+    record_wrong_call(HD_COMM_ERROR, __func__, trouble.c_str());
     return HD_INVALID_HANDLE;
   }
   std::unique_lock lock(devices().mutex);
   if (is_open(handle)) {  // another thread opened it meanwhile, so this opening is surplus
     lock.unlock();
     arms::close(arm);
-    keep_wrong_call(HD_DEVICE_ALREADY_INITIATED, __func__, "the arm is already open");
+    record_wrong_call(HD_DEVICE_ALREADY_INITIATED, __func__, "the arm is already open");
     return HD_INVALID_HANDLE;
   }
   Device& device = devices().all[handle];
@@ -205,7 +206,7 @@ void hdDisableDevice(HHD handle) {
   {
     const std::lock_guard lock(devices().mutex);
     if (!is_open(handle)) {
-      keep_wrong_call(HD_BAD_HANDLE, __func__, "no open arm has this handle");
+      record_wrong_call(HD_BAD_HANDLE, __func__, "no open arm has this handle");
       return;
     }
     devices().all[handle] = Device{};
@@ -218,7 +219,7 @@ void hdMakeCurrentDevice(HHD handle) {
   if (is_open(handle)) {
     set_current_device(handle);
   } else {
-    keep_wrong_call(HD_BAD_HANDLE, __func__, "no open arm has this handle");
+    record_wrong_call(HD_BAD_HANDLE, __func__, "no open arm has this handle");
   }
 }
 
@@ -230,20 +231,20 @@ HHD hdGetCurrentDevice(void) {
 void hdBeginFrame(HHD handle) {
   const std::lock_guard lock(devices().mutex);
   if (!is_open(handle)) {
-    keep_wrong_call(HD_BAD_HANDLE, __func__, "no open arm has this handle");
+    record_wrong_call(HD_BAD_HANDLE, __func__, "no open arm has this handle");
     return;
   }
   set_current_device(handle);
   Device& device = devices().all[handle];
   Frame& frame = device.frame;
   if (frame.open) {
-    keep_wrong_call(HD_ILLEGAL_BEGIN, __func__, "hdBeginFrame was called inside a frame");
+    record_wrong_call(HD_ILLEGAL_BEGIN, __func__, "hdBeginFrame was called inside a frame");
     return;
   }
   ArmReading newest;
   if (!arms::read(static_cast<int>(handle), newest)) newest = frame.now;
   if (device.one_frame_limit && device.framed_tick == newest.tick + 1) {
-    keep_wrong_call(HD_ILLEGAL_BEGIN, __func__, "more than one frame in a tick");
+    record_wrong_call(HD_ILLEGAL_BEGIN, __func__, "more than one frame in a tick");
     return;
   }
   device.framed_tick = newest.tick + 1;
@@ -252,18 +253,18 @@ void hdBeginFrame(HHD handle) {
   frame.now = newest;
   frame.open = true;
   frame.owner = std::this_thread::get_id();
-  look_at_forces(handle, device);
+  report_force_errors(handle, device);
 }
 
 void hdEndFrame(HHD handle) {
   const std::lock_guard lock(devices().mutex);
   if (!is_open(handle)) {
-    keep_wrong_call(HD_BAD_HANDLE, __func__, "no open arm has this handle");
+    record_wrong_call(HD_BAD_HANDLE, __func__, "no open arm has this handle");
     return;
   }
   Device& device = devices().all[handle];
   if (!device.frame.open) {
-    keep_wrong_call(HD_ILLEGAL_END, __func__, "hdEndFrame was called without hdBeginFrame");
+    record_wrong_call(HD_ILLEGAL_END, __func__, "hdEndFrame was called without hdBeginFrame");
     return;
   }
   end_frame(handle, device);
@@ -287,7 +288,7 @@ void hdUpdateCalibration(HDenum style) {
   constexpr HDenum kStyles =
       HD_CALIBRATION_ENCODER_RESET | HD_CALIBRATION_AUTO | HD_CALIBRATION_INKWELL;
   if (style == 0 || (style & ~kStyles) != 0) {
-    keep_wrong_call(HD_INVALID_VALUE, __func__, "no calibration style has this number");
+    record_wrong_call(HD_INVALID_VALUE, __func__, "no calibration style has this number");
     return;
   }
   // Our arms are calibrated when they are opened (thimble calibrate).
@@ -300,7 +301,7 @@ void hdUpdateCalibrationMessage(HDenum style) {
 
 HDboolean hdDeploymentLicense(const char* vendor, const char* application, const char* password) {
   if (vendor != nullptr && application != nullptr && password != nullptr) return HD_TRUE;
-  keep_wrong_call(HD_INVALID_LICENSE, __func__, "a string is null");
+  record_wrong_call(HD_INVALID_LICENSE, __func__, "a string is null");
   return HD_FALSE;
 }
 

@@ -35,16 +35,16 @@ struct Device {
   std::array<double, 3> joint_references{};  ///< only stored and returned
   std::int64_t enabled_ns = 0;               ///< Time of the last enabling, arm's clock.
   std::uint64_t framed_tick = 0;             ///< Tick of the newest frame, plus one.
-  driver::Fault fault_told = driver::Fault::kNone;
+  driver::Fault reported_fault = driver::Fault::kNone;
   driver::LinkState link_reported = driver::LinkState::kConnected;
-  bool warm_told = false;
+  bool warm_reported = false;
 };
 
 /// All arms of the process. Lock `mutex` to read or change it, but never while a callback runs or
 /// during a wait for an arm.
 struct Devices {
   std::mutex mutex;
-  std::array<Device, kArmsMost> all;
+  std::array<Device, kArmsMax> all;
   std::atomic<HHD> current{0};  ///< The newest choice of any thread, as the default.
 };
 
@@ -69,6 +69,6 @@ ArmReading seen(HHD device) noexcept;
 bool scheduler_stopped() noexcept;
 
 /// Ends a frame that this thread left open after its callbacks, with HD_FRAME_ERROR.
-void end_forgotten_frames() noexcept;
+void end_open_frames() noexcept;
 
 }  // namespace thimble::compat::hd

@@ -9,7 +9,7 @@
 namespace thimble::compat::hd {
 namespace {
 
-constexpr std::size_t kErrorsMost = 64;  // chosen: enough for rare checks of errors
+constexpr std::size_t kErrorsMax = 64;  // chosen: enough for rare checks of errors
 
 struct Errors {
   std::mutex mutex;
@@ -23,16 +23,16 @@ Errors& errors() {
 
 }  // namespace
 
-void keep_error(HDerror error, HHD device, int internal) noexcept {
+void record_error(HDerror error, HHD device, int internal) noexcept {
   Errors& kept = errors();
   const std::lock_guard lock(kept.mutex);
-  if (kept.all.size() >= kErrorsMost) kept.all.pop_front();
+  if (kept.all.size() >= kErrorsMax) kept.all.pop_front();
   kept.all.push_back({error, internal, device});
 }
 
-void keep_wrong_call(HDerror error, const char* function, const char* what) noexcept {
+void record_wrong_call(HDerror error, const char* function, const char* what) noexcept {
   arms::wrong_call(function, what);
-  keep_error(error, current_device());
+  record_error(error, current_device());
 }
 
 }  // namespace thimble::compat::hd

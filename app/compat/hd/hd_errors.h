@@ -5,9 +5,9 @@
 namespace thimble::compat::hd {
 
 /// Keeps an error for hdGetError; the oldest is discarded if there are too many.
-void keep_error(HDerror error, HHD device, int internal = 0) noexcept;
+void record_error(HDerror error, HHD device, int internal = 0) noexcept;
 
 /// Keeps an error of a wrong call, and counts it for the report of `thimble exec`.
-void keep_wrong_call(HDerror error, const char* function, const char* what) noexcept;
+void record_wrong_call(HDerror error, const char* function, const char* what) noexcept;
 
 }  // namespace thimble::compat::hd

@@ -20,26 +20,27 @@ T as(double value) noexcept {
   } else if constexpr (std::is_floating_point_v<T>) {
     return static_cast<T>(value);
   } else {
-    constexpr auto kMost = static_cast<double>(std::numeric_limits<T>::max());
-    constexpr auto kLeast = static_cast<double>(std::numeric_limits<T>::min());
+    constexpr auto kMax = static_cast<double>(std::numeric_limits<T>::max());
+    constexpr auto kMin = static_cast<double>(std::numeric_limits<T>::min());
     if (std::isnan(value)) return 0;
-    if (value >= kMost) return std::numeric_limits<T>::max();
-    if (value <= kLeast) return std::numeric_limits<T>::min();
+    if (value >= kMax) return std::numeric_limits<T>::max();
+    if (value <= kMin) return std::numeric_limits<T>::min();
     return static_cast<T>(std::llround(value));
   }
 }
 
 const Parameter* parameter_of(const char* function, HDenum number, const void* values) noexcept {
   if (values == nullptr) {
-    keep_wrong_call(HD_INVALID_VALUE, function, "the pointer is null");
+    record_wrong_call(HD_INVALID_VALUE, function, "the pointer is null");
     return nullptr;
   }
   const Parameter* parameter = find_parameter(number);
   if (parameter != nullptr) return parameter;
   if (is_text(number)) {
-    keep_wrong_call(HD_INVALID_INPUT_TYPE, function, "the parameter is a string; use hdGetString");
+    record_wrong_call(HD_INVALID_INPUT_TYPE, function,
+                      "the parameter is a string; use hdGetString");
   } else {
-    keep_wrong_call(HD_INVALID_ENUM, function, "no parameter has this number");
+    record_wrong_call(HD_INVALID_ENUM, function, "no parameter has this number");
   }
   return nullptr;
 }
@@ -63,7 +64,7 @@ void set(const char* function, HDenum number, const T* values) noexcept {
   const Parameter* parameter = parameter_of(function, number, values);
   if (parameter == nullptr) return;
   if (parameter->set == nullptr) {
-    keep_wrong_call(HD_INVALID_ENUM, function, "this parameter cannot be set");
+    record_wrong_call(HD_INVALID_ENUM, function, "this parameter cannot be set");
     return;
   }
   Numbers numbers{};
@@ -72,7 +73,7 @@ void set(const char* function, HDenum number, const T* values) noexcept {
   Device* device = current_open(function);
   if (device == nullptr) return;
   const HDerror error = parameter->set(current_device(), *device, numbers);
-  if (error != HD_SUCCESS) keep_wrong_call(error, function, hdGetErrorString(error));
+  if (error != HD_SUCCESS) record_wrong_call(error, function, hdGetErrorString(error));
 }
 
 bool Device::*capability_of(HDenum number) noexcept {
@@ -95,7 +96,7 @@ bool Device::*capability_of(HDenum number) noexcept {
 void switch_capability(const char* function, HDenum number, bool on) noexcept {
   bool Device::*capability = capability_of(number);
   if (capability == nullptr) {
-    keep_wrong_call(HD_INVALID_ENUM, function, "no capability has this number");
+    record_wrong_call(HD_INVALID_ENUM, function, "no capability has this number");
     return;
   }
   const std::lock_guard lock(devices().mutex);
@@ -130,7 +131,7 @@ void hdDisable(HDenum capability) {
 HDboolean hdIsEnabled(HDenum capability) {
   bool Device::*member = capability_of(capability);
   if (member == nullptr) {
-    keep_wrong_call(HD_INVALID_ENUM, __func__, "no capability has this number");
+    record_wrong_call(HD_INVALID_ENUM, __func__, "no capability has this number");
     return HD_FALSE;
   }
   const std::lock_guard lock(devices().mutex);
@@ -157,8 +158,8 @@ void hdGetLongv(HDenum parameter, HDlong* values) {
 HDstring hdGetString(HDenum parameter) {
   if (!is_text(parameter)) {
     const bool known = find_parameter(parameter) != nullptr;
-    keep_wrong_call(known ? HD_INVALID_INPUT_TYPE : HD_INVALID_ENUM, __func__,
-                    known ? "the parameter is not a string" : "no parameter has this number");
+    record_wrong_call(known ? HD_INVALID_INPUT_TYPE : HD_INVALID_ENUM, __func__,
+                      known ? "the parameter is not a string" : "no parameter has this number");
     return "";
   }
   if (parameter == HD_DEVICE_VENDOR) return "Thimble";
@@ -187,7 +188,7 @@ void hdSetLongv(HDenum parameter, const HDlong* values) {
 
 void hdScaleGimbalAngles(HDdouble, HDdouble, HDdouble, HDdouble transform[16]) {
   if (transform == nullptr) {
-    keep_wrong_call(HD_INVALID_VALUE, __func__, "the pointer is null");
+    record_wrong_call(HD_INVALID_VALUE, __func__, "the pointer is null");
     return;
   }
   const std::lock_guard lock(devices().mutex);

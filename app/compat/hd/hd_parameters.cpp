@@ -42,8 +42,8 @@ bool force_of_torques(const std::array<double, 9>& J, const std::array<double, 3
   };
   const double whole = determinant(at(0, 0), at(0, 1), at(0, 2), at(1, 0), at(1, 1), at(1, 2),
                                    at(2, 0), at(2, 1), at(2, 2));
-  constexpr double kLeast = 1e-7;  // m^3; an arm of 0.1 m reaches 1e-3 [chosen]
-  if (!(std::abs(whole) > kLeast)) return false;
+  constexpr double kMinDeterminant = 1e-7;  // m^3; an arm of 0.1 m reaches 1e-3 [chosen]
+  if (!(std::abs(whole) > kMinDeterminant)) return false;
   for (std::size_t k = 0; k < 3; ++k) {
     std::array<double, 9> m;
     for (std::size_t row = 0; row < 3; ++row) {
@@ -116,8 +116,8 @@ void get_true(const Look&, Numbers& to) {
 }
 void get_workspace(const Look& look, Numbers& to) {
   put(to_hd(look.facts.workspace_min), to, kMillimetres);
-  const std::array<double, 3> most = to_hd(look.facts.workspace_max);
-  for (std::size_t i = 0; i < 3; ++i) to[3 + i] = kMillimetres * most[i];
+  const std::array<double, 3> max_corner = to_hd(look.facts.workspace_max);
+  for (std::size_t i = 0; i < 3; ++i) to[3 + i] = kMillimetres * max_corner[i];
 }
 /// The height of the origin above the table, as if the workspace were on it.
 void get_tabletop(const Look& look, Numbers& to) {

@@ -10,8 +10,8 @@
 namespace thimble::compat::hd {
 
 /// The maximum number of values of a parameter.
-inline constexpr std::size_t kNumbersMost = 36;
-using Numbers = std::array<double, kNumbersMost>;
+inline constexpr std::size_t kNumbersMax = 36;
+using Numbers = std::array<double, kNumbersMax>;
 
 /// The sources of a parameter's values.
 struct Look {

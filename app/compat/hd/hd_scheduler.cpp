@@ -21,9 +21,9 @@
 namespace thimble::compat::hd {
 namespace {
 
-constexpr std::size_t kCallbacksMost = 256;  // chosen: programs have two to five
-constexpr HDulong kFullRate = 1000;          // Hz, rate of our arms
-constexpr int kPriority = 60;                // of the thread, below that of the arm's loop
+constexpr std::size_t kCallbacksMax = 256;  // chosen: programs have two to five
+constexpr HDulong kFullRate = 1000;         // Hz, rate of our arms
+constexpr int kPriority = 60;               // of the thread, below that of the arm's loop
 
 struct Callback {
   HDSchedulerHandle handle = 0;
@@ -74,7 +74,7 @@ void remove(Scheduler& s, HDSchedulerHandle handle) {
 
 /// Adds a callback after those of its priority; 0 if there is no room. Lock required.
 HDSchedulerHandle add(Scheduler& s, HDSchedulerCallback call, void* data, HDushort priority) {
-  if (s.callbacks.size() >= kCallbacksMost) return 0;
+  if (s.callbacks.size() >= kCallbacksMax) return 0;
   const auto behind = std::find_if(s.callbacks.begin(), s.callbacks.end(),
                                    [&](const Callback& c) { return c.priority < priority; });
   const HDSchedulerHandle handle = s.next++;
@@ -111,13 +111,13 @@ void run_callbacks(Scheduler& s) {
     }
     s.changed.notify_all();
   }
-  end_forgotten_frames();
+  end_open_frames();
 }
 
 /// Returns the first open arm, which sets the pace; -1 if there is none.
 int pacing_arm() {
   const std::lock_guard lock(devices().mutex);
-  for (HHD handle = 0; handle < kArmsMost; ++handle) {
+  for (HHD handle = 0; handle < kArmsMax; ++handle) {
     if (is_open(handle)) return static_cast<int>(handle);
   }
   return -1;
@@ -166,7 +166,7 @@ void end_thread(std::thread& thread) {
 /// Removes all forces when the scheduler has stopped.
 void end_forces() {
   const std::lock_guard lock(devices().mutex);
-  for (HHD handle = 0; handle < kArmsMost; ++handle) {
+  for (HHD handle = 0; handle < kArmsMax; ++handle) {
     if (!is_open(handle)) continue;
     devices().all[handle].frame.f_asked_W = {};
     arms::ask_force(static_cast<int>(handle), {});
@@ -214,7 +214,7 @@ void hdStopScheduler(void) {
 void hdSetSchedulerRate(HDulong hertz) {
   // Every tick of the arm, or every second, third and so on.
   if (hertz == 0 || hertz > kFullRate || kFullRate % hertz != 0) {
-    keep_wrong_call(HD_INVALID_VALUE, __func__, "the rate must be 1000 Hz divided by an integer");
+    record_wrong_call(HD_INVALID_VALUE, __func__, "the rate must be 1000 Hz divided by an integer");
     return;
   }
   Scheduler& s = scheduler();
@@ -225,19 +225,19 @@ void hdSetSchedulerRate(HDulong hertz) {
 HDSchedulerHandle hdScheduleAsynchronous(HDSchedulerCallback callback, void* data,
                                          HDushort priority) {
   if (callback == nullptr) {
-    keep_wrong_call(HD_INVALID_VALUE, __func__, "the callback is null");
+    record_wrong_call(HD_INVALID_VALUE, __func__, "the callback is null");
     return 0;
   }
   Scheduler& s = scheduler();
   const std::lock_guard lock(s.mutex);
   const HDSchedulerHandle handle = add(s, callback, data, priority);
-  if (handle == 0) keep_wrong_call(HD_SCHEDULER_FULL, __func__, "too many callbacks");
+  if (handle == 0) record_wrong_call(HD_SCHEDULER_FULL, __func__, "too many callbacks");
   return handle;
 }
 
 void hdScheduleSynchronous(HDSchedulerCallback callback, void* data, HDushort priority) {
   if (callback == nullptr) {
-    keep_wrong_call(HD_INVALID_VALUE, __func__, "the callback is null");
+    record_wrong_call(HD_INVALID_VALUE, __func__, "the callback is null");
     return;
   }
   Scheduler& s = scheduler();
@@ -250,7 +250,7 @@ void hdScheduleSynchronous(HDSchedulerCallback callback, void* data, HDushort pr
   }
   const HDSchedulerHandle handle = add(s, callback, data, priority);
   if (handle == 0) {
-    keep_wrong_call(HD_SCHEDULER_FULL, __func__, "too many callbacks");
+    record_wrong_call(HD_SCHEDULER_FULL, __func__, "too many callbacks");
     return;
   }
   s.changed.wait(lock, [&] {
@@ -265,7 +265,7 @@ void hdUnschedule(HDSchedulerHandle handle) {
   std::unique_lock lock(s.mutex);
   Callback* callback = find(s, handle);
   if (callback == nullptr) {
-    keep_wrong_call(HD_INVALID_VALUE, __func__, "no callback has this handle");
+    record_wrong_call(HD_INVALID_VALUE, __func__, "no callback has this handle");
     return;
   }
   callback->leaving = true;
@@ -284,11 +284,11 @@ HDboolean hdWaitForCompletion(HDSchedulerHandle handle, HDWaitCode code) {
   std::unique_lock lock(s.mutex);
   if (code == HD_WAIT_CHECK_STATUS) return find(s, handle) != nullptr ? HD_TRUE : HD_FALSE;
   if (code != HD_WAIT_INFINITE) {
-    keep_wrong_call(HD_INVALID_VALUE, __func__, "no wait code has this number");
+    record_wrong_call(HD_INVALID_VALUE, __func__, "no wait code has this number");
     return HD_FALSE;
   }
   if (on_scheduler_thread) {
-    keep_wrong_call(HD_INVALID_OPERATION, __func__, "a callback cannot wait for callbacks");
+    record_wrong_call(HD_INVALID_OPERATION, __func__, "a callback cannot wait for callbacks");
     return HD_FALSE;
   }
   s.changed.wait(lock, [&] { return find(s, handle) == nullptr || !s.running; });

@@ -14,7 +14,7 @@ namespace {
 namespace arms = thimble::compat::arms;
 using thimble::compat::ArmFacts;
 using thimble::compat::ArmReading;
-using thimble::compat::ForceAsked;
+using thimble::compat::ForceRequest;
 
 constexpr int kFailed = -1, kDone = 0, kTrue = 1;
 
@@ -24,8 +24,8 @@ std::mutex& mutex() {
 }
 
 /// The last requests: a new torque keeps the force, and vice versa.
-std::array<ForceAsked, thimble::compat::kArmsMost>& asked() {
-  static auto& all = *new std::array<ForceAsked, thimble::compat::kArmsMost>;
+std::array<ForceRequest, thimble::compat::kArmsMax>& asked() {
+  static auto& all = *new std::array<ForceRequest, thimble::compat::kArmsMax>;
   return all;
 }
 
@@ -57,7 +57,7 @@ int set(const char* function, int id, const std::array<double, 3>* force,
   if (!arms::is_open(id)) return wrong(function, "the arm is not open");
   {
     const std::lock_guard lock(mutex());
-    ForceAsked& all = asked()[static_cast<std::size_t>(id)];
+    ForceRequest& all = asked()[static_cast<std::size_t>(id)];
     if (force != nullptr) all.f_W = *force;
     if (torque != nullptr) all.torque_W = *torque;
     arms::ask_force(id, all);
@@ -152,7 +152,7 @@ int hdPhantomGetType(int id, char* name) {
 void hdPhantomStartServo(void) {}
 
 void hdPhantomStopServo(void) {
-  for (int id = 0; id < thimble::compat::kArmsMost; ++id) {
+  for (int id = 0; id < thimble::compat::kArmsMax; ++id) {
     if (!arms::is_open(id)) continue;
     const std::lock_guard lock(mutex());
     asked()[static_cast<std::size_t>(id)] = {};

@@ -47,7 +47,7 @@ driver::Result<void> ArmRun::prepare(int number) {
                                                      .firmware = options_.firmware,
                                                      .unchecked = options_.unchecked});
   if (!arm) return arm.error();
-  for (const std::string& told : arm->told) scene::terminal().info("{}", told);
+  for (const std::string& warning : arm->warnings) scene::terminal().info("{}", warning);
   std::string scene = options_.scene;
   if (scene.empty()) {
     auto made = FreeScene::make(wanted.arm_file);
@@ -92,7 +92,7 @@ driver::Result<void> ArmRun::prepare(int number) {
   auto prepared = session::Session::prepare(scene, asked);
   if (!prepared) return prepared.error();
   session_ = std::move(prepared).value();
-  for (const std::string& told : session_->told()) scene::terminal().info("{}", told);
+  for (const std::string& warning : session_->warnings()) scene::terminal().info("{}", warning);
   desk_ = session::open_viewer_requests(*session_,
                                         options_.view || asked.hand_by_mouse
                                             ? session::ViewerChoice::kAsked
@@ -153,24 +153,24 @@ driver::Result<void> ArmRun::open_topics() {
 void ArmRun::attend(const std::string& program) {
   if (over_) return;
   attendance_->step();
-  const std::string who = fmt::format("{} ({})", program, channel_.face.data());
-  if (client_->stalls() != stalls_told_) {
-    if (stalls_told_ == 0) {
+  const std::string who = fmt::format("{} ({})", program, channel_.api.data());
+  if (client_->stalls() != reported_stalls_) {
+    if (reported_stalls_ == 0) {
       scene::logger().warn(
           "{} has not renewed its force on {} for {:.0f} ms. The force is zero until it does. The "
           "program hangs, or its loop is too slow.",
           who, channel_.facts.name.data(), 1e-6 * static_cast<double>(channel_.facts.stall_ns));
     }
-    stalls_told_ = client_->stalls();
+    reported_stalls_ = client_->stalls();
   }
   driver::TickRecord newest;
   if (!session_->newest().load(newest)) return;
   const bool faulty = newest.fault != driver::Fault::kNone;
-  if (faulty && !fault_told_) {
+  if (faulty && !fault_reported_) {
     scene::logger().error("{}: the force of {} was switched off: {}", who,
                           channel_.facts.name.data(), driver::describe(newest.fault));
   }
-  fault_told_ = faulty;
+  fault_reported_ = faulty;
 }
 
 std::string ArmRun::end() {
@@ -200,7 +200,7 @@ std::string ArmRun::own_report() const {
   const auto missed = std::max<long long>(due - static_cast<long long>(ticks), 0);
   std::string s =
       fmt::format("Program   {} ({}): requested a force in {} of {} ticks; {} tick{} missed.\n",
-                  options_.program, channel_.face.data(), client_->renewals(), ticks, missed,
+                  options_.program, channel_.api.data(), client_->renewals(), ticks, missed,
                   missed == 1 ? "" : "s");
   if (client_->stalls() > 0) {
     s += fmt::format(

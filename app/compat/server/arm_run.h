@@ -71,8 +71,8 @@ class ArmRun {
   std::optional<session::ReplugWatches> watch_;
   std::optional<session::RunAttendance> attendance_;
   std::atomic<bool> stop_{false};
-  std::uint64_t stalls_told_ = 0;
-  bool fault_told_ = false;
+  std::uint64_t reported_stalls_ = 0;
+  bool fault_reported_ = false;
   bool begun_ = false, over_ = false;
 };
 

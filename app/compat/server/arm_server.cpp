@@ -43,8 +43,8 @@ void answer(std::atomic<Word>& word, Word value) {
 
 driver::Result<std::unique_ptr<ArmServer>> ArmServer::make(const ExecOptions& options,
                                                            const std::atomic<bool>& stop) {
-  if (options.arms.empty() || options.arms.size() > kArmsMost) {
-    return driver::Error{fmt::format("--arm: expected 1 to {} arms.", kArmsMost)};
+  if (options.arms.empty() || options.arms.size() > kArmsMax) {
+    return driver::Error{fmt::format("--arm: expected 1 to {} arms.", kArmsMax)};
   }
   if (options.paced) {
     for (const ExecArm& arm : options.arms) {
@@ -162,16 +162,16 @@ void ArmServer::end() {
 
 std::string ArmServer::report() const {
   std::string s = reports_;
-  if (const std::uint64_t torques = channel_->torques_asked.load(); torques > 0) {
+  if (const std::uint64_t torques = channel_->torque_requests.load(); torques > 0) {
     s += fmt::format("Torque    requested {} times; ignored, because the arm has 3 motors.\n",
                      torques);
   }
-  if (const std::uint64_t grips = channel_->grippers_asked.load(); grips > 0) {
+  if (const std::uint64_t grips = channel_->gripper_requests.load(); grips > 0) {
     s += fmt::format(
         "Gripper   force requested {} times; ignored, because the gripper has no motor.\n", grips);
   }
   const std::uint32_t used = channel_->wrong_calls_used.load();
-  for (std::size_t i = 0; i < used && i < Channel::kWrongCallsMost; ++i) {
+  for (std::size_t i = 0; i < used && i < Channel::kWrongCallsMax; ++i) {
     const WrongCall& call = channel_->wrong_calls[i];
     s += fmt::format("Wrong     {} {} time{}: {}\n", call.function.data(), call.count.load(),
                      call.count.load() == 1 ? "" : "s", call.what.data());

@@ -66,7 +66,7 @@ class ArmServer {
   const std::atomic<bool>& stop_;
   std::unique_ptr<session::SharedMemory> memory_;
   Channel* channel_;
-  std::array<Arm, kArmsMost> arms_;
+  std::array<Arm, kArmsMax> arms_;
   std::string reports_;
   std::uint32_t served_ = 0;
   int runs_ = 0;

@@ -76,9 +76,9 @@ void ClientForce::take(const driver::DeviceState& state) noexcept {
 Eigen::Vector3d ClientForce::own_part(const driver::DeviceState& state) noexcept {
   own_opened_ = opened_further(own_opened_, state.dt, own_opening_);
   const std::int64_t asked_ns = channel_.watchdog_ns.load(std::memory_order_relaxed);
-  const std::int64_t most_ns =
+  const std::int64_t max_age_ns =
       asked_ns > 0 ? std::min(asked_ns, limits_.stall_ns) : limits_.stall_ns;
-  if (!f_asked_W_.isZero(0) && state.time_ns - renewed_ns_ > most_ns) {
+  if (!f_asked_W_.isZero(0) && state.time_ns - renewed_ns_ > max_age_ns) {
     f_asked_W_.setZero();
     stalled_.store(true, std::memory_order_relaxed);
     stalls_.store(stalls_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);

@@ -4,7 +4,7 @@
 
 namespace thimble::compat {
 
-driver::Result<std::filesystem::path> face_folder() {
+driver::Result<std::filesystem::path> library_folder() {
   std::error_code status;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", status);
   for (const char* place : {"compat/lib", THIMBLE_COMPAT_INSTALLED}) {

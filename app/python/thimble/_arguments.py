@@ -13,7 +13,7 @@ from ._core import ArgumentError
 PathOrName = Union[str, "os.PathLike[str]"]
 Vector = NDArray[np.float64]
 
-_SEED_MOST = 2**64 - 1  # limit of the program's type
+_MAX_SEED = 2**64 - 1  # limit of the program's type
 
 
 def path_of(name: str, value: PathOrName, meant: str = "a file or a name") -> str:
@@ -44,11 +44,11 @@ def number_of(name: str, value: Any) -> float:
         raise TypeError(f"{name}: expected a number, found {value!r}.") from None
 
 
-def whole_of(name: str, value: Any, least: int = 0, most: int = _SEED_MOST) -> int:
+def whole_of(name: str, value: Any, minimum: int = 0, maximum: int = _MAX_SEED) -> int:
     """Return an integer. Raises TypeError for any other type, ArgumentError outside the bounds."""
     number = number_of(name, value)
-    if not number.is_integer() or not least <= int(value) <= most:
-        raise ArgumentError(f"{name}: expected a whole number from {least} to {most}, found {value!r}.")
+    if not number.is_integer() or not minimum <= int(value) <= maximum:
+        raise ArgumentError(f"{name}: expected a whole number from {minimum} to {maximum}, found {value!r}.")
     return int(value)
 
 

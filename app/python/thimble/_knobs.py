@@ -16,8 +16,8 @@ class Knob(NamedTuple):
 
     name: str
     unit: str
-    least: float
-    most: float
+    min: float
+    max: float
     value: float
 
 
@@ -92,13 +92,13 @@ class Knobs:
             return "no knobs"
         width = max(map(len, self))
         return "\n".join(
-            f"{knob.name:<{width}}  {knob.value:g} {knob.unit} ({knob.least:g} to {knob.most:g})"
+            f"{knob.name:<{width}}  {knob.value:g} {knob.unit} ({knob.min:g} to {knob.max:g})"
             for knob in self.values()
         )
 
     def _repr_html_(self) -> str:
         rows = "".join(
-            f"<tr><td>{escape(knob.name)}</td><td>{knob.value:g}</td><td>{knob.least:g} to {knob.most:g}</td>"
+            f"<tr><td>{escape(knob.name)}</td><td>{knob.value:g}</td><td>{knob.min:g} to {knob.max:g}</td>"
             f"<td>{escape(knob.unit)}</td></tr>"
             for knob in self.values()
         )

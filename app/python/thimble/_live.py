@@ -10,13 +10,13 @@ from typing import Any, Mapping, Optional, Union
 from . import _core
 from ._arguments import PathOrName, path_of
 from ._core import Error
-from ._held import Held, begin, stop_all, stop_at_exit
+from ._run_base import RunBase, open_run, stop_all, stop_at_exit
 from ._knobs import Knobs
 from ._scene_text import Scene
 from ._ticks import Tick, Ticks
 
 
-class Live(Held):
+class Live(RunBase):
     """A scene in real time, on a simulated or a real arm (:func:`open`).
 
     The servo loop runs in C++ on its own thread; Python observes it and can end it. Use it in a ``with``
@@ -112,7 +112,7 @@ def open(
             f"{device} will move by itself. Keep clear of it, hold its grip, keep its switch within reach, "
             "and pass agree=True."
         )
-    held = begin(
+    held = open_run(
         scene,
         set=set,
         seconds=seconds,

@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._arguments import PathOrName, vector_of
-from ._held import Held, OfArm, Past, begin, stop_at_exit
+from ._run_base import RunBase, ArmView, FinishedRun, open_run, stop_at_exit
 from ._knobs import Knobs
 from ._laws import Law
 from ._meshes import Meshes
 from ._scene_text import Scene
-from ._shot import Shot, Touched
+from ._shot import Shot, ShotSource
 from ._ticks import Figure, Tick, Ticks
 
 
@@ -36,7 +36,7 @@ def _options_of(
     return decorate
 
 
-class Run(Held, Ticks):
+class Run(RunBase, Ticks):
     """A finished run: its ticks as arrays, its description and its results. It can be pickled, with its meshes.
 
     If the scene has several arms, the ticks are those of the first arm; ``arms`` has all of them.
@@ -47,10 +47,10 @@ class Run(Held, Ticks):
         run: Any,
         columns: Any = None,
         arms: Optional[dict[str, "Run"]] = None,
-        touched: Optional[Touched] = None,
+        shot_source: Optional[ShotSource] = None,
     ) -> None:
         self._run = run
-        self._touched = touched
+        self._shot_source = shot_source
         self._arms = arms
         Ticks.__init__(self, run.ticks() if columns is None else columns)
 
@@ -59,12 +59,12 @@ class Run(Held, Ticks):
         """The run of each arm by its name in the scene; empty if the scene has one arm."""
         if self._arms is None:
             self._arms = {
-                name: Run(OfArm(self._run, i), None, {}, self._touched) for i, name in enumerate(self._run.arms)
+                name: Run(ArmView(self._run, i), None, {}, self._shot_source) for i, name in enumerate(self._run.arms)
             }
         return self._arms
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Run, (Past(self._run), self.columns, self.arms, self._touched)
+        return Run, (FinishedRun(self._run), self.columns, self.arms, self._shot_source)
 
     def shot(self, at: Optional[float] = None, **options: Any) -> Shot:
         """Draw a moment of the run, for a notebook or a file. The other options are those of :func:`shot`.
@@ -73,8 +73,8 @@ class Run(Held, Ticks):
         Raises Error for runs that it cannot repeat: those with a custom force law, or with a quality
         other than normal.
         """
-        assert self._touched is not None
-        return self._touched.shot(at=at, **options)
+        assert self._shot_source is not None
+        return self._shot_source.shot(at=at, **options)
 
     def _title(self) -> str:
         return f"{self.info['scene']}, {self.info['arm']}"
@@ -120,16 +120,16 @@ def run(
     Raises Error, with the remedy, if scene, arm or mesh cannot be loaded. A fault of the arm raises
     nothing: ``end`` is "fault" then, and the last tick names the fault.
     """
-    held = begin(scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record,
+    held = open_run(scene, set=set, seconds=seconds, seed=seed, arm=arm, quality=quality, record=record,
                  overwrite=overwrite, law=law, meshes=meshes)
     held.run()
     why_not = "it had a custom force law" if law is not None else ""
     if quality != "normal":
         why_not = why_not or f"its quality was {quality}"
-    return Run(held, touched=Touched(held.info()["scene_file"], arm, seed, why_not))
+    return Run(held, shot_source=ShotSource(held.info()["scene_file"], arm, seed, why_not))
 
 
-class Stepper(Held):
+class Stepper(RunBase):
     """A run in virtual time, tick by tick. The options are those of :func:`run`.
 
     ``while stepper.step(): ...`` is bit-identical to :func:`run`. Use it in a ``with`` block if it records:
@@ -143,7 +143,7 @@ class Stepper(Held):
     def __init__(self, *arguments: Any, **options: Any) -> None:
         given = inspect.signature(run).bind(*arguments, **options)
         given.apply_defaults()
-        self._run = begin(**given.arguments)
+        self._run = open_run(**given.arguments)
         stop_at_exit(self)
 
     def __enter__(self) -> "Stepper":

@@ -31,7 +31,7 @@ class Shot:
         return f"Shot({width} x {height} pixels)"
 
 
-class Touched(NamedTuple):
+class ShotSource(NamedTuple):
     """Scene, arm and seed of a run, to draw it. `why_not`: why it cannot be drawn, or ""."""
 
     scene: str

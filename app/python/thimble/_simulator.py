@@ -12,7 +12,7 @@ from ._arguments import PathOrName, Vector, number_of, path_of, rows_of, vector_
 from ._core import ArgumentError
 from ._ticks import Tick, Ticks
 
-_ARMS_MOST = 1_000_000  # 10 GB and more; [chosen] to detect a wrong unit
+_MAX_ARMS = 1_000_000  # 10 GB and more; [chosen] to detect a wrong unit
 
 
 class Simulator:
@@ -94,7 +94,7 @@ class Simulators:
         rate: float = 1000,
         seed: Union[int, Sequence[int], NDArray[np.integer[Any]]] = 0,
     ) -> None:
-        count = whole_of("count", count, 1, _ARMS_MOST)
+        count = whole_of("count", count, 1, _MAX_ARMS)
         hands = rows_of("hand", hand, count)
         if not isinstance(seed, (Sequence, np.ndarray)):
             first = whole_of("seed", seed)

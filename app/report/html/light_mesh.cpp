@@ -46,16 +46,16 @@ render::TriangleMesh joined(const render::TriangleMesh& mesh, const Eigen::Align
 
 }  // namespace
 
-render::TriangleMesh light_mesh(const render::TriangleMesh& mesh, std::size_t triangles_most) {
-  if (mesh.triangles.size() <= triangles_most) return mesh;
+render::TriangleMesh light_mesh(const render::TriangleMesh& mesh, std::size_t max_triangles) {
+  if (mesh.triangles.size() <= max_triangles) return mesh;
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
   const double longest = box.sizes().maxCoeff();
   // The surface of a cube has two triangles for each of its 6 n^2 cells.
-  double cells = std::max(4.0, std::sqrt(static_cast<double>(triangles_most) / 12));
+  double cells = std::max(4.0, std::sqrt(static_cast<double>(max_triangles) / 12));
   for (;;) {
     render::TriangleMesh light = joined(mesh, box, longest / cells);
-    if (light.triangles.size() <= triangles_most || cells <= 4) return light;
+    if (light.triangles.size() <= max_triangles || cells <= 4) return light;
     cells *= 0.8;
   }
 }

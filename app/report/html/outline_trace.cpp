@@ -7,9 +7,8 @@
 
 namespace thimble::report {
 
-OutlineTrace::OutlineTrace(std::uint64_t expected_ticks)
-    : ticks_(kRowsMost), periods_ns_(kRowsMost) {
-  const std::uint64_t stretches = (kRowsMost - kTouchRowsMost) / kPerStretch - 1;
+OutlineTrace::OutlineTrace(std::uint64_t expected_ticks) : ticks_(kRowsMax), periods_ns_(kRowsMax) {
+  const std::uint64_t stretches = (kRowsMax - kTouchRowsMax) / kPerStretch - 1;
   stretch_ = std::max<std::uint64_t>(1, (expected_ticks + stretches - 1) / stretches);
 }
 
@@ -38,7 +37,7 @@ void OutlineTrace::take(const driver::TickRecord& tick) noexcept {
   }
   own_[1] = row;
   ++seen_;
-  if (tick.in_contact && touch_rows_ < kTouchRowsMost) {
+  if (tick.in_contact && touch_rows_ < kTouchRowsMax) {
     ++touch_rows_;
     keep(row);
   }

@@ -19,9 +19,9 @@ namespace thimble::report {
 class OutlineTrace final : public session::TickObserver {
  public:
   /// Maximum number of ticks kept, 110 MB. [chosen]
-  static constexpr std::size_t kRowsMost = 400'000;
+  static constexpr std::size_t kRowsMax = 400'000;
   /// Maximum number of ticks in contact kept in addition. [chosen: more than a page shows]
-  static constexpr std::size_t kTouchRowsMost = 100'000;
+  static constexpr std::size_t kTouchRowsMax = 100'000;
 
   /// Allocates memory for a run of `expected_ticks` (> 0). Real-time: never from the servo thread.
   explicit OutlineTrace(std::uint64_t expected_ticks);

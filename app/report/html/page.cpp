@@ -78,8 +78,8 @@ Json live_part(const PageTouch& touch, const PageSource& source) {
   for (const session::SharedScene::Knob& knob : touch.scene.knobs) {
     knobs.push_back({{"name", knob.name},
                      {"unit", knob.unit},
-                     {"least", knob.least},
-                     {"most", knob.most},
+                     {"least", knob.min},
+                     {"most", knob.max},
                      {"initial", knob.initial}});
   }
   return {{"rows", source.rows},

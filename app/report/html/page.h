@@ -56,9 +56,9 @@ struct PageTouch {
 
 /// Maximum number of ticks of all arms on a page: 60 s at 1 kHz. [chosen: below 10 MB with
 /// everything else]
-inline constexpr std::size_t kPageRowsMost = 60'001;
+inline constexpr std::size_t kPageRowsMax = 60'001;
 /// Maximum number of triangles of all objects on a page. [chosen: 2.5 MB]
-inline constexpr std::size_t kPageTrianglesMost = 120'000;
+inline constexpr std::size_t kPageTrianglesMax = 120'000;
 
 /// The server of a live page, for its updates and its requests to the run.
 struct PageSource {

@@ -54,11 +54,11 @@ std::string words_of(const TickEvent& event) {
 // Numbered marks; the oldest may be discarded.
 class MarkList {
  public:
-  explicit MarkList(std::size_t most = SIZE_MAX) : most_(most) {}
+  explicit MarkList(std::size_t max_marks = SIZE_MAX) : max_marks_(max_marks) {}
 
   std::uint64_t push(PageMark mark) {
     marks_.push_back(std::move(mark));
-    if (marks_.size() > most_) {
+    if (marks_.size() > max_marks_) {
       marks_.pop_front();
       ++oldest_;
     }
@@ -71,20 +71,21 @@ class MarkList {
   std::uint64_t end() const { return oldest_ + marks_.size(); }
 
  private:
-  std::size_t most_;
+  std::size_t max_marks_;
   std::deque<PageMark> marks_;
   std::uint64_t oldest_ = 0;
 };
 
 constexpr std::uint64_t kNone = UINT64_MAX;
 
-using GoingOn = std::array<std::uint64_t, session::kActivities>;  // the marks of current activities
+using OpenMarks =
+    std::array<std::uint64_t, session::kActivities>;  // the marks of current activities
 
 // An activity has two events, its begin and its end, but only one mark. Returns its number; kNone
 // for a touch, which has none.
-std::uint64_t add(const TickEvent& event, MarkList& marks, GoingOn& going_on) {
+std::uint64_t add(const TickEvent& event, MarkList& marks, OpenMarks& open_marks) {
   if (event.kind == EventKind::kTouchBegan || event.kind == EventKind::kTouchEnded) return kNone;
-  auto& open = going_on[static_cast<std::size_t>(event.activity)];
+  auto& open = open_marks[static_cast<std::size_t>(event.activity)];
   if (event.kind == EventKind::kActivityEnded && open != kNone) {
     const std::uint64_t number = std::exchange(open, kNone);
     PageMark* mark = marks.at(number);
@@ -101,10 +102,10 @@ std::uint64_t add(const TickEvent& event, MarkList& marks, GoingOn& going_on) {
 
 std::vector<PageMark> drain(session::SpscRing<TickEvent>& ring) {
   MarkList list;
-  GoingOn going_on;
-  going_on.fill(kNone);
+  OpenMarks open_marks;
+  open_marks.fill(kNone);
   for (auto events = ring.front(); !events.empty(); events = ring.front()) {
-    for (const TickEvent& event : events) add(event, list, going_on);
+    for (const TickEvent& event : events) add(event, list, open_marks);
     ring.drop(events.size());
   }
   std::vector<PageMark> marks;
@@ -112,7 +113,7 @@ std::vector<PageMark> drain(session::SpscRing<TickEvent>& ring) {
   return marks;
 }
 
-void tell_of_lost(std::uint64_t lost, std::vector<PageMark>& marks) {
+void add_lost_mark(std::uint64_t lost, std::vector<PageMark>& marks) {
   if (lost == 0 || marks.empty()) return;
   marks.push_back({marks.back().end_ns, marks.back().end_ns, PageMark::Kind::kWarning,
                    fmt::format("{} more events are not shown on this page.", lost)});
@@ -123,16 +124,16 @@ class NoCounters final : public session::EventCounters {
  public:
   std::uint64_t changes() const noexcept override { return 0; }
   session::ActivityCounts activities() const noexcept override { return {}; }
-  std::uint64_t wires_taken() const noexcept override { return 0; }
+  std::uint64_t links_replaced() const noexcept override { return 0; }
 };
 
 bool gate_acted(const driver::TickRecord& tick) noexcept {
   if (tick.stage != driver::DeviceStage::kActive) return false;
-  double most = 0;
+  double max_difference = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    most = std::max(most, std::abs(tick.f_sent_W[k] - tick.f_wanted_W[k]));
+    max_difference = std::max(max_difference, std::abs(tick.f_sent_W[k] - tick.f_wanted_W[k]));
   }
-  return most > 1e-6;  // N: rounding errors of the arm's frames are smaller
+  return max_difference > 1e-6;  // N: rounding errors of the arm's frames are smaller
 }
 
 // Intervals in which the gate changed the force, merged across gaps of up to EventWatch::kQuiet_ns.
@@ -200,46 +201,45 @@ EventKeeper::EventKeeper(const driver::Device& device, std::int64_t period_ns)
 std::vector<PageMark> EventKeeper::finish() {
   watch_.finish();
   auto marks = drain(ring_);
-  tell_of_lost(watch_.lost(), marks);
+  add_lost_mark(watch_.lost(), marks);
   return marks;
 }
 
 std::vector<PageMark> marks_of_ticks(std::span<const driver::TickRecord> ticks,
                                      std::int64_t period_ns) {
   const NoCounters counters;
-  const auto ring = std::make_unique<session::SpscRing<TickEvent>>(EventKeeper::kEventsMost);
+  const auto ring = std::make_unique<session::SpscRing<TickEvent>>(EventKeeper::kEventsMax);
   session::EventWatch watch(counters, std::max<std::int64_t>(1, period_ns), *ring);
   for (const driver::TickRecord& tick : ticks) watch.take(tick);
   watch.finish();
   auto marks = drain(*ring);
-  tell_of_lost(watch.lost(), marks);
+  add_lost_mark(watch.lost(), marks);
   add_gate(ticks, marks);
   std::stable_sort(marks.begin(), marks.end(),
                    [](const PageMark& a, const PageMark& b) { return a.begin_ns < b.begin_ns; });
   return marks;
 }
 
-struct MarksAsTheyCome::Parts {
+struct LiveMarks::Parts {
   explicit Parts(std::int64_t period_ns)
       : watch(counters, std::max<std::int64_t>(1, period_ns), ring) {
-    going_on.fill(kNone);
+    open_marks.fill(kNone);
   }
 
   NoCounters counters;
   session::SpscRing<TickEvent> ring{64};  // a tick has fewer events
   session::EventWatch watch;
-  MarkList marks{kMost};
-  GoingOn going_on{};
+  MarkList marks{kMax};
+  OpenMarks open_marks{};
   GateTimes gate;
   std::uint64_t gate_mark = kNone;
 };
 
-MarksAsTheyCome::MarksAsTheyCome(std::int64_t period_ns)
-    : parts_(std::make_unique<Parts>(period_ns)) {}
+LiveMarks::LiveMarks(std::int64_t period_ns) : parts_(std::make_unique<Parts>(period_ns)) {}
 
-MarksAsTheyCome::~MarksAsTheyCome() = default;
+LiveMarks::~LiveMarks() = default;
 
-std::vector<std::uint64_t> MarksAsTheyCome::take(std::span<const driver::TickRecord> ticks) {
+std::vector<std::uint64_t> LiveMarks::take(std::span<const driver::TickRecord> ticks) {
   Parts& parts = *parts_;
   std::vector<std::uint64_t> changed;
   bool gate_changed = false;
@@ -247,7 +247,7 @@ std::vector<std::uint64_t> MarksAsTheyCome::take(std::span<const driver::TickRec
     parts.watch.take(tick);
     for (auto events = parts.ring.front(); !events.empty(); events = parts.ring.front()) {
       for (const TickEvent& event : events) {
-        const std::uint64_t number = add(event, parts.marks, parts.going_on);
+        const std::uint64_t number = add(event, parts.marks, parts.open_marks);
         if (number != kNone) changed.push_back(number);
       }
       parts.ring.drop(events.size());
@@ -271,13 +271,13 @@ std::vector<std::uint64_t> MarksAsTheyCome::take(std::span<const driver::TickRec
   return changed;
 }
 
-const PageMark* MarksAsTheyCome::mark(std::uint64_t number) const noexcept {
+const PageMark* LiveMarks::mark(std::uint64_t number) const noexcept {
   return parts_->marks.at(number);
 }
-std::uint64_t MarksAsTheyCome::oldest() const noexcept {
+std::uint64_t LiveMarks::oldest() const noexcept {
   return parts_->marks.oldest();
 }
-std::uint64_t MarksAsTheyCome::end() const noexcept {
+std::uint64_t LiveMarks::end() const noexcept {
   return parts_->marks.end();
 }
 

@@ -34,7 +34,7 @@ class EventKeeper final : public session::TickObserver {
  public:
   /// Maximum number of events kept, 500 kB; later ones are counted as lost. [chosen: a page shows a
   /// hundred at a time]
-  static constexpr std::size_t kEventsMost = 8192;
+  static constexpr std::size_t kEventsMax = 8192;
 
   /// Observes ticks due every `period_ns` on `device`, which must be open and outlive this.
   /// Real-time: never from the servo thread.
@@ -49,20 +49,20 @@ class EventKeeper final : public session::TickObserver {
 
  private:
   session::DeviceCounters counters_;
-  session::SpscRing<session::TickEvent> ring_{kEventsMost};
+  session::SpscRing<session::TickEvent> ring_{kEventsMax};
   session::EventWatch watch_;
 };
 
 /// Finds the marks of `marks_of_ticks` during a run, as its ticks arrive; the oldest marks are
 /// discarded. Real-time: never from the servo thread.
-class MarksAsTheyCome {
+class LiveMarks {
  public:
   /// Maximum number of marks kept. [chosen: the length of a page's list]
-  static constexpr std::size_t kMost = 500;
+  static constexpr std::size_t kMax = 500;
 
   /// Observes ticks due every `period_ns`.
-  explicit MarksAsTheyCome(std::int64_t period_ns);
-  ~MarksAsTheyCome();
+  explicit LiveMarks(std::int64_t period_ns);
+  ~LiveMarks();
 
   /// Takes the next ticks. Returns the numbers of new and changed marks; numbers start at 0.
   std::vector<std::uint64_t> take(std::span<const driver::TickRecord> ticks);

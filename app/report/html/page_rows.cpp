@@ -94,13 +94,13 @@ void keep_outlines(const PageTicks& ticks, std::span<const std::size_t> some, st
   }
 }
 
-// Returns the largest of 1, 2, 5, 10, 20 ... that is not above `most`, so that stretches of a run
-// of round length begin at round ticks; 1 at least.
-std::size_t round_stretches(std::size_t most) {
+// Returns the largest of 1, 2, 5, 10, 20 ... that is not above `max_count`, so that stretches of a
+// run of round length begin at round ticks; 1 at least.
+std::size_t round_stretches(std::size_t max_count) {
   std::size_t round = 1;
-  for (std::size_t power = 1; power <= most; power *= 10) {
+  for (std::size_t power = 1; power <= max_count; power *= 10) {
     for (const std::size_t times : {1U, 2U, 5U}) {
-      if (times * power <= most) round = times * power;
+      if (times * power <= max_count) round = times * power;
     }
   }
   return round;
@@ -170,7 +170,7 @@ Gap gap_of(const PageTicks& ticks, const std::array<double, kDrawn>& ranges, std
 
 // Adds the remaining rows where the display differs most from the ticks.
 void keep_where_it_errs(const PageTicks& ticks, const std::array<double, kDrawn>& ranges,
-                        std::size_t rows_most, KeptTicks& kept) {
+                        std::size_t max_rows, KeptTicks& kept) {
   std::priority_queue<Gap> gaps;
   const auto add = [&](std::size_t begin, std::size_t end) {
     if (end - begin < 2) return;
@@ -179,7 +179,7 @@ void keep_where_it_errs(const PageTicks& ticks, const std::array<double, kDrawn>
   };
   const std::vector<std::size_t> rows = kept.list();
   for (std::size_t i = 1; i < rows.size(); ++i) add(rows[i - 1], rows[i]);
-  while (kept.count() < rows_most && !gaps.empty()) {
+  while (kept.count() < max_rows && !gaps.empty()) {
     const Gap gap = gaps.top();
     gaps.pop();
     kept.keep(gap.middle);
@@ -189,19 +189,19 @@ void keep_where_it_errs(const PageTicks& ticks, const std::array<double, kDrawn>
 }
 
 // Distributes rows that still remain evenly over the other ticks, where nothing changes.
-void keep_evenly(std::size_t ticks, std::size_t rows_most, KeptTicks& kept) {
+void keep_evenly(std::size_t ticks, std::size_t max_rows, KeptTicks& kept) {
   std::vector<std::size_t> others;
   for (std::size_t i = 0; i < ticks; ++i) {
     if (!kept.has(i)) others.push_back(i);
   }
-  const std::size_t left = std::min(others.size(), rows_most - std::min(rows_most, kept.count()));
+  const std::size_t left = std::min(others.size(), max_rows - std::min(max_rows, kept.count()));
   for (std::size_t n = 0; n < left; ++n) kept.keep(others[n * others.size() / left]);
 }
 
 // Keeps the ticks before and after each begin and end of a touch, up to `rows` of them.
 void keep_touch_ends(const PageTicks& ticks, std::size_t rows, KeptTicks& kept) {
-  const std::size_t most = kept.count() + rows;
-  for (std::size_t i = 1; i < ticks.ticks.size() && kept.count() + 2 <= most; ++i) {
+  const std::size_t max_count = kept.count() + rows;
+  for (std::size_t i = 1; i < ticks.ticks.size() && kept.count() + 2 <= max_count; ++i) {
     if (ticks.ticks[i].in_contact == ticks.ticks[i - 1].in_contact) continue;
     kept.keep(i - 1);
     kept.keep(i);
@@ -221,9 +221,9 @@ std::int64_t PageTicks::period_ns(std::size_t i) const noexcept {
   return (tick.time_ns - before.time_ns) / static_cast<std::int64_t>(apart);
 }
 
-std::vector<std::size_t> rows_kept(const PageTicks& ticks, std::size_t rows_most) {
+std::vector<std::size_t> rows_kept(const PageTicks& ticks, std::size_t max_rows) {
   const std::size_t count = ticks.ticks.size();
-  if (count <= rows_most) {
+  if (count <= max_rows) {
     std::vector<std::size_t> all(count);
     for (std::size_t i = 0; i < count; ++i) all[i] = i;
     return all;
@@ -233,14 +233,14 @@ std::vector<std::size_t> rows_kept(const PageTicks& ticks, std::size_t rows_most
   // The page ends with the last tick.
   kept.keep(count - 1);
   constexpr std::size_t kFixed = 2 + 2 * kDrawn;
-  if (rows_most < 4 * kFixed) {  // room for an outline only
+  if (max_rows < 4 * kFixed) {  // room for an outline only
     std::vector<std::size_t> all(count);
     for (std::size_t i = 0; i < count; ++i) all[i] = i;
-    if (rows_most > 2 + kPerStretch) keep_outlines(ticks, all, rows_most - 2, kept);
+    if (max_rows > 2 + kPerStretch) keep_outlines(ticks, all, max_rows - 2, kept);
     return kept.list();
   }
   const auto ranges = keep_extremes(ticks, kept);
-  keep_touch_ends(ticks, rows_most / 8, kept);
+  keep_touch_ends(ticks, max_rows / 8, kept);
   std::vector<std::size_t> touching, free;
   for (std::size_t i = 0; i < count; ++i) {
     (ticks.ticks[i].in_contact ? touching : free).push_back(i);
@@ -248,14 +248,14 @@ std::vector<std::size_t> rows_kept(const PageTicks& ticks, std::size_t rows_most
   // About one stretch per pixel of a plot, over all ticks.
   std::vector<std::size_t> all(count);
   for (std::size_t i = 0; i < count; ++i) all[i] = i;
-  keep_outlines(ticks, all, kPerStretch * round_stretches(rows_most / (4 * kPerStretch)), kept);
-  const std::size_t rows = rows_most - std::min(rows_most, kept.count());
+  keep_outlines(ticks, all, kPerStretch * round_stretches(max_rows / (4 * kPerStretch)), kept);
+  const std::size_t rows = max_rows - std::min(max_rows, kept.count());
   const std::size_t for_free =
       std::min(free.size(), std::max(rows / 4, rows - std::min(rows, touching.size())));
   keep_outlines(ticks, touching, rows - for_free, kept);
   keep_outlines(ticks, free, for_free, kept);
-  keep_where_it_errs(ticks, ranges, rows_most, kept);
-  keep_evenly(count, rows_most, kept);
+  keep_where_it_errs(ticks, ranges, max_rows, kept);
+  keep_evenly(count, max_rows, kept);
   return kept.list();
 }
 

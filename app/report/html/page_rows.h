@@ -29,7 +29,7 @@ struct PageTicks {
   std::span<const std::int64_t> periods_ns;  ///< Empty: computed from the ticks' times.
 };
 
-/// Returns the numbers of the ticks that a page of at most `rows_most` (> 0) rows shows, in order;
+/// Returns the numbers of the ticks that a page of at most `max_rows` (> 0) rows shows, in order;
 /// all ticks if they fit. Otherwise ticks in contact have priority: all are kept if they fit into
 /// three quarters of the rows. The other ticks are divided into equal stretches, which keep the
 /// ticks with minimum and maximum force, requested force, depth, period and computing time. Also
@@ -37,7 +37,7 @@ struct PageTicks {
 /// before and after each touch. The remaining rows go to where the path and the curves differ most
 /// from the row shown before. Every row is an original tick, not an average. Real-time: never from
 /// the servo thread.
-std::vector<std::size_t> rows_kept(const PageTicks& ticks, std::size_t rows_most);
+std::vector<std::size_t> rows_kept(const PageTicks& ticks, std::size_t max_rows);
 
 /// Adds the ticks `kept` to a page; SI units, W. The arrays are PREFIX + t (s from `begin_ns` on
 /// the loop's clock), tick, tip, proxy, sent, asked, depth, period, work, speed, object, touching.

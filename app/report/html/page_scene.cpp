@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using session::SharedScene;
 
-constexpr std::size_t kArmPicturesMost = 5000;  // of its bars; chosen
+constexpr std::size_t kArmPicturesMax = 5000;  // of its bars; chosen
 
 const char* name_of(session::SharedKind kind) {
   switch (kind) {
@@ -54,7 +54,7 @@ render::TriangleMesh mesh_of(const SharedScene& scene, const SharedScene::Object
 bool draws_all(const SharedScene& scene) {
   std::size_t all = 0;
   for (const SharedScene::Object& object : scene.objects) all += object.triangle_count;
-  return all <= kPageTrianglesMost;
+  return all <= kPageTrianglesMax;
 }
 
 namespace {
@@ -105,7 +105,7 @@ void add_bars(const SharedScene::Arm& arm, std::span<const driver::TickRecord> t
   if (!arm.geometry || ticks.empty()) return;
   const std::int64_t lasted = ticks.back().time_ns - ticks.front().time_ns;
   const std::int64_t step = std::max<std::int64_t>(
-      session::BodyTrace::kStep_ns, lasted / static_cast<std::int64_t>(kArmPicturesMost));
+      session::BodyTrace::kStep_ns, lasted / static_cast<std::int64_t>(kArmPicturesMax));
   std::int64_t next = ticks.front().time_ns;
   for (const driver::TickRecord& tick : ticks) {
     if (tick.time_ns < next) continue;
@@ -158,10 +158,10 @@ Json page_objects(const PageTouch& touch, PageBlock& block) {
     const bool shaped = std::any_of(touch.left.begin(), touch.left.end(),
                                     [i](const PageShape& shape) { return shape.object == i; });
     // All objects are reduced in proportion; an object that is on the page twice counts twice.
-    const std::size_t most = all <= kPageTrianglesMost
-                                 ? mesh.triangles.size()
-                                 : kPageTrianglesMost * mesh.triangles.size() / all;
-    const render::TriangleMesh drawn = light_mesh(mesh, most);
+    const std::size_t max_drawn = all <= kPageTrianglesMax
+                                      ? mesh.triangles.size()
+                                      : kPageTrianglesMax * mesh.triangles.size() / all;
+    const render::TriangleMesh drawn = light_mesh(mesh, max_drawn);
     add_mesh(block, prefix, drawn);
     objects.push_back({{"name", object.name},
                        {"kind", name_of(object.kind)},
@@ -175,7 +175,7 @@ Json page_objects(const PageTouch& touch, PageBlock& block) {
   }
   for (const PageShape& shape : touch.left) {
     add_mesh(block, "object" + std::to_string(shape.object) + ".left.",
-             light_mesh(shape.mesh, kPageTrianglesMost));
+             light_mesh(shape.mesh, kPageTrianglesMax));
   }
   return objects;
 }
@@ -242,7 +242,7 @@ Json page_arm(const PageTouch& touch, std::size_t number, PageBlock& block) {
   const SharedScene::Arm& drawn = touch.scene.arms[number];
   const std::string prefix = "arm" + std::to_string(number) + ".";
   const PageTicks ticks(arm.ticks, arm.periods_ns);
-  const auto kept = rows_kept(ticks, kPageRowsMost / touch.arms.size());
+  const auto kept = rows_kept(ticks, kPageRowsMax / touch.arms.size());
   const std::int64_t begin = arm.ticks.empty() ? 0 : arm.ticks.front().time_ns;
   add_rows(block, prefix, ticks, kept, begin);
   Json json{{"name", drawn.in_scene},   {"arm", drawn.name},         {"device", drawn.device},

@@ -8,7 +8,7 @@
 namespace thimble::report {
 
 ShapeTrace::ShapeTrace(std::vector<Shaped> shaped)
-    : shaped_(std::move(shaped)), frames_(kFramesMost), moves_(kMovesMost) {
+    : shaped_(std::move(shaped)), frames_(kFramesMax), moves_(kMovesMax) {
   std::size_t vertices = 0, splits = 0;
   for (const Shaped& one : shaped_) {
     first_.push_back(static_cast<std::uint32_t>(vertices));

@@ -21,8 +21,8 @@ class ShapeTrace final : public session::TickObserver {
   /// Minimum time between two pictures, ns. [chosen: deformation is slow; 20 a second look smooth]
   static constexpr std::int64_t kStep_ns = 50'000'000;
   /// Maximum number of pictures, and of vertex moves in all of them: 2 MB. [chosen]
-  static constexpr std::size_t kFramesMost = 4096;
-  static constexpr std::size_t kMovesMost = 100'000;  ///< As above.
+  static constexpr std::size_t kFramesMax = 4096;
+  static constexpr std::size_t kMovesMax = 100'000;  ///< As above.
 
   /// A deformed object.
   struct Shaped {

@@ -16,7 +16,7 @@
 namespace thimble::report {
 namespace {
 
-std::vector<PageShape> shapes_left(const scene::Scene& scene, const scene::SceneObjects& objects) {
+std::vector<PageShape> final_shapes(const scene::Scene& scene, const scene::SceneObjects& objects) {
   std::vector<PageShape> left;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (!scene.objects[i].body.shape.named()) continue;
@@ -110,7 +110,7 @@ driver::Result<void> RunPage::write(const driver::RealTimeGrant& grant,
                   .virtual_time = !setup.real_time(),
                   .bodies = bodies_.get(),
                   .dents = dents_.get(),
-                  .left = shapes_left(setup.scene(), setup.objects())};
+                  .left = final_shapes(setup.scene(), setup.objects())};
   std::vector<std::string> devices;
   for (std::size_t arm = 0; arm < session_.arms(); ++arm) {
     devices.push_back(setup.device_name(arm));
@@ -128,12 +128,12 @@ driver::Result<void> RunPage::write(const driver::RealTimeGrant& grant,
 
 void ReplayPage::begin(const scene::Scene& scene,
                        std::shared_ptr<const scene::SceneObjects> objects) {
-  session::ReplayFilm::begin(scene, std::move(objects));
+  session::ReplayAnimation::begin(scene, std::move(objects));
   shapes_ = trace_shapes(this->scene(), this->objects());
 }
 
 void ReplayPage::take(const driver::TickRecord& tick) {
-  session::ReplayFilm::take(tick);
+  session::ReplayAnimation::take(tick);
   if (shapes_) shapes_->take(tick);
 }
 
@@ -147,7 +147,7 @@ driver::Result<void> ReplayPage::write(std::span<const session::Replay> replays,
                   .replayed = true,
                   .bodies = bodies(),
                   .dents = dents(),
-                  .left = shapes_left(scene(), objects())};
+                  .left = final_shapes(scene(), objects())};
   const auto period_ns = static_cast<std::int64_t>(std::llround(1e9 / info.rate));
   // Recordings come in any order; the page uses the scene's order of arms.
   std::vector<const session::Replay*> order(scene().arms.size(), nullptr);

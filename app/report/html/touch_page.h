@@ -7,7 +7,7 @@
 
 #include "observers/body_trace.h"
 #include "observers/dent_trace.h"
-#include "recording/replay_film.h"
+#include "recording/replay_animation.h"
 #include "report/html/outline_trace.h"
 #include "report/html/page_marks.h"
 #include "report/html/shape_trace.h"
@@ -47,7 +47,7 @@ class RunPage {
 };
 
 /// Records a replay for animation, and writes its page.
-class ReplayPage final : public session::ReplayFilm {
+class ReplayPage final : public session::ReplayAnimation {
  public:
   void begin(const scene::Scene& scene,
              std::shared_ptr<const scene::SceneObjects> objects) override;

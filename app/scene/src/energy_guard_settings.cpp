@@ -11,8 +11,8 @@
 namespace thimble::scene {
 namespace {
 
-/// Over how many reports the paces of loop and arm are averaged [chosen: paces of whole hertz and
-/// microseconds repeat within them, or nearly so].
+/// Number of reports over which the periods of loop and arm are averaged [chosen: periods of whole
+/// hertz and microseconds repeat, almost or exactly, within that number].
 constexpr int kReportsLookedAt = 5040;
 
 }  // namespace
@@ -25,16 +25,17 @@ double loop_delay(const ArmFile& arm) {
 
 LoopTimes loop_pace(const ArmFile& arm, double rate) {
   LoopTimes times{.period = 1 / rate, .delay = loop_delay(arm)};
-  // A Falcon's board reports when it is asked.
+  // The board of a Falcon reports only on request.
   if (!arm.can_simulate || arm.is<driver::DeltaArm>()) return times;
   const std::int64_t report_ns = arm.simulated.firmware.report_period_ns;
   if (!(rate > 0 && rate <= 1e9) || report_ns <= 0) return times;
   const std::int64_t tick_ns = std::llround(1e9 / rate);
-  // Ticks with a report that is new, and how long each waited, from the first report's arrival.
+  // Sums over the ticks that receive a new report, from the arrival of the first report, and the
+  // age of each report in its tick.
   std::int64_t last_ns = 0, last_wait_ns = 0;
   double total = 0, squares = 0, waited = 0;
   for (int taken = 0; taken < kReportsLookedAt; ++taken) {
-    // The first tick at or after the arrival of the next report that no tick has taken.
+    // First tick at or after the arrival of the next report that no tick has received.
     const std::int64_t due_ns = (last_ns / report_ns + 1) * report_ns;
     const std::int64_t now_ns = (due_ns + tick_ns - 1) / tick_ns * tick_ns;
     const auto held = static_cast<double>(now_ns - last_ns);
@@ -46,9 +47,9 @@ LoopTimes loop_pace(const ArmFile& arm, double rate) {
   }
   const double mean = total / kReportsLookedAt;
   const double variance = squares / kReportsLookedAt - mean * mean;
-  // Where each tick has its report, the period stays the rate's to the last digit.
+  // If every tick has its own report, the period remains exactly that of the rate.
   if (mean != static_cast<double>(tick_ns)) times.period = mean / 1e9;
-  // Below a millionth of the period it is rounding.
+  // A smaller variance, relative to the period, is rounding.
   if (variance > 1e-12 * mean * mean) times.period_spread = std::sqrt(variance) / 1e9;
   times.delay += waited / total / 1e9;
   return times;
@@ -66,16 +67,16 @@ driver::EnergyGuardSettings energy_settings(const ArmFile& arm, double rate,
                                                  (2 * arm.declared.stiffness));
   settings.onset = kEnergyOnset;
   settings.dissipation = arm.simulated.plant.viscous + kSureHandDamping;
-  // One count moves the estimate by its gain times step over period.
+  // One encoder step changes the velocity estimate by its gain times step over period.
   const double corner = 2 * std::numbers::pi * arm.velocity_corner_frequency;
   const double updates = 1 / times.period;
   const double gain = corner > 0 ? -math::expm1(-corner / updates) : 1;
   settings.speed_floor = gain * updates * worst_over_workspace(arm, 3).encoder_step;
   settings.slope =
       choice.slope.value_or(stiffness_limit(arm.simulated.plant.viscous, latency_of(times)));
-  // Nothing but a ring of torques depends on it: beyond the ring's end the last one stands.
+  // Only a ring buffer of torques depends on the delay. A longer delay uses its last entry.
   settings.delay_ticks = static_cast<int>(
-      std::min(std::round(times.delay * rate), double{driver::EnergyGuardSettings::kDelayMost}));
+      std::min(std::round(times.delay * rate), double{driver::EnergyGuardSettings::kDelayMax}));
   return settings;
 }
 

@@ -18,7 +18,7 @@ struct LinkGravity {
   driver::SerialArm arm;      ///< Geometry of the arm.
   driver::SerialArm moments;  ///< Moments along B and C instead of lengths, kg m.
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
-  double most = 0;  ///< Largest compensation force, N.
+  double max_force = 0;  ///< Largest compensation force, N.
 
   /// Returns the force at joint angles q (rad), N in the world; zero if the Jacobian is singular.
   /// Real-time: safe.
@@ -28,9 +28,9 @@ struct LinkGravity {
     const Eigen::Vector3d tau = moments.jacobian(q).transpose() * up_B;
     const Eigen::Vector3d f_W = R_WB * (arm.jacobian(q).transpose().inverse() * tau);
     const double length = f_W.norm();
-    if (length <= most) return f_W;
+    if (length <= max_force) return f_W;
     if (!(length < HUGE_VAL)) return {0, 0, 0};
-    return f_W * (most / length);
+    return f_W * (max_force / length);
   }
 
   /// Returns the potential of that force at joint angles q, J: minus the height of the moments
@@ -49,7 +49,7 @@ inline LinkGravity link_gravity(const ArmFile& file) {
                       .length_b = file.carried_moments[0],
                       .length_c = file.carried_moments[1]},
           .R_WB = file.R_WB,
-          .most = file.limits.force_max / 3 - file.carried_weight};
+          .max_force = file.limits.force_max / 3 - file.carried_weight};
 }
 
 }  // namespace thimble::scene

@@ -16,10 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void complain_of(const std::string& name) {
+void warn_not_saved(const std::string& name) {
   logger().warn(
-      "The heat of the motors cannot be kept in {}, so the next run takes them for cold. Let them "
-      "cool before it; check that the folder may be written to.",
+      "Cannot save the motor temperatures to {}, so the next run assumes cold motors. Let them "
+      "cool before it, and make the folder writable.",
       heat_file(name).string());
 }
 
@@ -41,8 +41,8 @@ KnownHeat load_heat(const std::string& name, const driver::HeatSettings& setting
   if (status.type() == fs::file_type::not_found) return known;
   known.heat.fill(1);
   if (status.type() != fs::file_type::regular) {
-    known.note = "The motors count as hot: " + file.string() +
-                 " is no regular file. If they are cold, delete it.";
+    known.note = "The motors are assumed to be hot: " + file.string() +
+                 " is not a regular file. If they are cold, delete it.";
     return known;
   }
   auto yaml = YamlFile::load(file);
@@ -58,13 +58,13 @@ KnownHeat load_heat(const std::string& name, const driver::HeatSettings& setting
     sound = yaml->finish().ok();
   }
   if (!sound) {
-    known.note = "The motors count as hot: " + file.string() +
-                 " cannot be understood. If they are cold, delete it.";
+    known.note = "The motors are assumed to be hot: " + file.string() +
+                 " is not a valid record. If they are cold, delete it.";
     return known;
   }
   if (running) {
     known.note =
-        "The motors count as hot: the last run with this arm did not end properly. If "
+        "The motors are assumed to be hot: the last run with this arm did not end properly. If "
         "they are cold, delete " +
         file.string() + ".";
     return known;
@@ -83,11 +83,11 @@ bool save_heat(const std::string& name, const std::array<double, 3>& heat, doubl
   const fs::path fresh = file.string() + ".new";
   std::error_code trouble;
   fs::create_directories(file.parent_path(), trouble);
-  fs::remove(fresh, trouble);  // a pipe of that name would be waited for
+  fs::remove(fresh, trouble);  // opening a pipe of that name would block
   std::ofstream stream(fresh);
   stream.precision(17);
-  stream << "# Heat of the motors of " << name << " after a run: 0 as cold as the room, 1 the "
-         << "winding's limit.\nheat: [" << heat[0] << ", " << heat[1] << ", " << heat[2]
+  stream << "# Heat of the motors of " << name << " after a run: 0 is the temperature of the room, "
+         << "1 the limit of the winding.\nheat: [" << heat[0] << ", " << heat[1] << ", " << heat[2]
          << "]\ntime: " << now << "\nrunning: \"" << (running ? "yes" : "no") << "\"\n";
   stream.close();
   if (stream) fs::rename(fresh, file, trouble);
@@ -96,11 +96,11 @@ bool save_heat(const std::string& name, const std::array<double, 3>& heat, doubl
 
 HeatKeeper::HeatKeeper(std::string name, const driver::Device& device)
     : name_(std::move(name)), device_(device) {
-  if (!save_heat(name_, device_.heat().heat(), world_time(), true)) complain_of(name_);
+  if (!save_heat(name_, device_.heat().heat(), world_time(), true)) warn_not_saved(name_);
 }
 
 HeatKeeper::~HeatKeeper() {
-  if (!save_heat(name_, device_.heat().heat(), world_time(), false)) complain_of(name_);
+  if (!save_heat(name_, device_.heat().heat(), world_time(), false)) warn_not_saved(name_);
 }
 
 }  // namespace thimble::scene

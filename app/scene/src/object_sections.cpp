@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Gives the groups of the table, each once, in its order.
+/// Returns the groups of the effect table, each once, in its order.
 std::vector<std::string_view> group_names() {
   std::vector<std::string_view> groups;
   for (const render::EffectKind& kind : render::effect_table()) {
@@ -32,7 +32,8 @@ std::vector<std::string_view> group_names() {
   return groups;
 }
 
-/// Finds which effect an entry of the list names; nullptr if none, and notes why.
+/// Returns the effect that an entry of the list names; nullptr, with a recorded mistake, if there
+/// is none.
 const render::EffectKind* named_effect(YamlMap& entry) {
   const render::EffectKind* found = nullptr;
   std::string known;
@@ -40,7 +41,7 @@ const render::EffectKind* named_effect(YamlMap& entry) {
     known += (known.empty() ? "" : " or ") + std::string(group) + ": NAME";
     if (!entry.has(group)) continue;
     if (found != nullptr) {
-      entry.refuse(group, "stands beside another effect; begin a list entry of its own");
+      entry.refuse(group, "is a second effect in one list entry; move it to an entry of its own");
       return nullptr;
     }
     std::vector<const render::EffectKind*> kinds;
@@ -56,10 +57,11 @@ const render::EffectKind* named_effect(YamlMap& entry) {
   return found;
 }
 
-constexpr double kSideMin = 1e-4, kSideMax = 2;  // m, as the size of meshes
-constexpr int kAround = 96;  // sides of a drawn sphere: its facets lie within 0.03 % of the radius
+constexpr double kSideMin = 1e-4, kSideMax = 2;  // m, as for the size of meshes
+constexpr int kAround = 96;  // sides of a drawn sphere: its facets are within 0.03 % of the radius
 
-/// Adds a rectangle about `middle`, with its own corners, so that its normals are its own.
+/// Adds a rectangle around `middle`. It has its own vertices, so its normals are not averaged with
+/// those of its neighbours.
 void add_rectangle(const Vector3d& middle, const Vector3d& u, const Vector3d& v,
                    render::TriangleMesh& mesh) {
   const auto first = static_cast<std::int32_t>(mesh.vertices.size());
@@ -84,7 +86,7 @@ render::TriangleMesh box_mesh(const render::Box& box) {
 
 constexpr int kRows = kAround / 2;
 
-/// Returns the directions to a ball's vertices between its poles, row by row.
+/// Returns the directions from a sphere's centre to its vertices between the poles, row by row.
 std::vector<Vector3d> ball_directions() {
   std::vector<Vector3d> directions;
   for (int row = 1; row < kRows; ++row) {

@@ -27,8 +27,8 @@
 namespace thimble::scene {
 namespace {
 
-// Bounds catch slipped decimal points and values in mm; they are far outside of what a desk-top arm
-// can use [DEVICES 3].
+// The bounds catch misplaced decimal points and values in mm. They are far beyond what a desk-top
+// arm can use [DEVICES 3].
 constexpr double kPositionMax = 2;                    // m
 constexpr double kStiffnessMax = 1e5;                 // N/m
 constexpr double kDampingMax = 1000;                  // N s/m
@@ -37,7 +37,8 @@ constexpr double kBandMax = 0.1;                      // m
 constexpr double kDurationMax = 86400;                // s
 constexpr double kRateMin = 10;                       // Hz
 constexpr double kRateMax = 1e5;                      // Hz
-constexpr double kShareBorne = 0.5;  // of the law's stiffness [chosen: hands differ by that]
+constexpr double kStiffnessMargin =
+    0.5;  // of the stable stiffness [chosen: hands differ by this factor]
 
 render::ContactChoice read_contact(YamlMap map) {
   render::ContactChoice choice;
@@ -66,8 +67,8 @@ render::ContactChoice read_contact(YamlMap map) {
     if (choice.blending != render::BlendingChoice::kFixedBand &&
         choice.blending != render::BlendingChoice::kSizedBand) {
       map.reject("profile",
-                 "says how the normal turns within a band: name it with blending: fixed_band or "
-                 "sized_band");
+                 "sets how the normal turns within a band; use it with blending: "
+                 "fixed_band or sized_band");
     }
   }
   map.finish();
@@ -79,7 +80,7 @@ void read_mesh(YamlMap& map, const std::filesystem::path& folder,
   object.mesh_file = find_mesh_file(map, folder, mesh_folder);
   if (map.has("size")) object.size = map.require_number("size", "m", 1e-4, kPositionMax);
   if (object.size && map.has("scale")) {
-    map.refuse("scale", "cannot stand together with size; keep one of them");
+    map.refuse("scale", "cannot be used with size; keep one of them");
   } else if (map.has("scale")) {
     object.scale = map.require_number("scale", "m per unit of the file", 1e-9, 1e9);
   }
@@ -91,19 +92,22 @@ void read_mesh(YamlMap& map, const std::filesystem::path& folder,
   }
 }
 
-/// Checks what goes with sheets, and chooses their tracker.
+/// Checks the keys that sheets exclude, and selects the tracker for sheets.
 void read_sheets(YamlMap& map, SceneObject& object) {
   if ((object.repair || object.sheet_thickness) && object.paged) {
-    map.reject(object.repair ? "repair" : "open",
-               "a mesh in pages is taken as it is; put it right before it is cut");
+    map.reject(
+        object.repair ? "repair" : "open",
+        "cannot be used with a page file; repair the mesh before it is split into pages (thimble "
+        "mesh --repair)");
     return;
   }
   if (!object.sheet_thickness) return;
   const bool named = map.has("contact") && map.require_map("contact").has("tracker");
   if (named && object.contact.tracker != render::TrackerChoice::kGodObject) {
-    map.reject("open",
-               "only the tracker \"god_object\" cannot be pushed through a sheet; leave "
-               "contact: {tracker: ...} away");
+    map.reject(
+        "open",
+        "needs the tracker \"god_object\", the only one that cannot pass through a sheet; remove "
+        "contact: {tracker: ...}");
   }
   object.contact.tracker = render::TrackerChoice::kGodObject;
 }
@@ -115,7 +119,7 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   int forms = 0;
   for (const char* form : {"mesh", "plane", "sphere", "box", "field"}) forms += map.has(form);
   if (forms > 1) {
-    map.refuse("", "expected one of mesh, plane, sphere, box and field, found several");
+    map.refuse("", "expected one of mesh, plane, sphere, box and field, found several; keep one");
     return object;
   }
   object.R_WO = map.optional_rotation("rotate_degrees");
@@ -139,12 +143,13 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   }
   if (object.paged) {
     const render::ContactChoice& c = object.contact;
-    const bool as_it_is = c.tracker == render::TrackerChoice::kPacked && !c.search && !c.blending &&
-                          !c.normals && !c.curved_depth && !c.crease_angle;
-    if (map.has("contact") && !as_it_is) {
-      map.reject("contact",
-                 "a mesh in pages is touched in one way, \"tracker: compact\", and has its creases "
-                 "in the file; keep nothing else");
+    const bool uses_defaults = c.tracker == render::TrackerChoice::kPacked && !c.search &&
+                               !c.blending && !c.normals && !c.curved_depth && !c.crease_angle;
+    if (map.has("contact") && !uses_defaults) {
+      map.reject(
+          "contact",
+          "a page file supports only \"tracker: compact\", and stores its creases itself; remove "
+          "all other keys");
     }
     object.contact.tracker = render::TrackerChoice::kPacked;
   }
@@ -162,42 +167,45 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
     };
     object.coupling = coupling_of(context, names("texture"), names("friction"));
     if (object.paged) {
-      map.reject("body", "only what is in memory has a body; put it on another object");
+      map.reject("body", "cannot be used with a page file, only with a mesh in memory");
     } else if (object.sheet_thickness && (object.body.dent || object.body.shape.named())) {
-      map.reject("body", "a sheet can move, but only a closed mesh gives way; keep motion");
+      map.reject("body",
+                 "of a sheet can only be motion: dent, plastic and snap need a closed mesh");
     } else if (object.shape && (object.body.dent || object.body.shape.named())) {
       map.reject("body",
-                 "a shape can move, but only a mesh gives way; keep motion, or name a mesh");
+                 "of a shape can only be motion: dent, plastic and snap need a mesh; name a mesh");
     }
   }
   map.finish();
   return object;
 }
 
-/// Returns whether every surface of the scene is well within what its loop holds with one arm.
-bool bears_its_rate(const Scene& scene, const ArmFile& file) {
+/// Returns whether the stiffness of every surface is well within the stable range of the loop, with
+/// one arm.
+bool is_stable_at_rate(const Scene& scene, const ArmFile& file) {
   const device_sim::SimulatedArmSettings& arm = file.simulated;
   const double latency = latency_of(loop_pace(file, scene.rate));
   return std::all_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& object) {
     const double held = arm.plant.viscous + arm.hand.damping + object.damping;
-    // Written so that NaN is not borne.
-    return object.stiffness <= kShareBorne * stiffness_limit(held, latency);
+    // Written so that NaN counts as unstable.
+    return object.stiffness <= kStiffnessMargin * stiffness_limit(held, latency);
   });
 }
 
-/// Returns the same of all arms of the scene.
-bool bears_its_rate(const Scene& scene) {
+/// Returns whether this holds for all arms of the scene.
+bool is_stable_at_rate(const Scene& scene) {
   return std::all_of(scene.arms.begin(), scene.arms.end(),
-                     [&](const SceneArm& one) { return bears_its_rate(scene, one.arm); });
+                     [&](const SceneArm& one) { return is_stable_at_rate(scene, one.arm); });
 }
 
-/// Notes a rate at which the gate of an arm would take the loop for stalled.
+/// Records a mistake if the period of the loop is so long that the gate of an arm would report a
+/// stall.
 void check_stall(YamlMap& root, double rate, const ArmFile& arm) {
   const double stall = 1e-9 * static_cast<double>(arm.limits.stall_ns);
   if (1 / rate <= stall) return;
   root.reject("rate",
               fmt::format("expected {:.4g} Hz or more, found {:g}: a tick would take longer "
-                          "than the {:.4g} s after which the gate of {} takes the loop for "
+                          "than the {:.4g} s after which the gate of {} treats the loop as "
                           "stalled",
                           1 / stall, rate, stall, arm.name));
 }
@@ -246,7 +254,7 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
       scene.arms.front().arm = std::move(arm).value();
     } else {
       arm_error = arm.error();
-      root.ignore_checks();  // they would compare with an arm that is not there
+      root.ignore_checks();  // they would compare with an arm that could not be read
     }
   }
   if (!arm_error) {
@@ -288,7 +296,7 @@ driver::Result<Scene> find_and_read_scene(const std::filesystem::path& meant,
 
 driver::Result<Scene> load_scene(const std::filesystem::path& meant, const SceneReading& reading) {
   auto scene = find_and_read_scene(meant, reading);
-  if (!(reading.rate_factor < 1) || (scene && bears_its_rate(*scene))) {
+  if (!(reading.rate_factor < 1) || (scene && is_stable_at_rate(*scene))) {
     if (scene && reading.rate_factor > 1) {
       const auto report_as_often = [&](ArmFile& arm) {
         auto& period_ns = arm.simulated.firmware.report_period_ns;
@@ -298,9 +306,9 @@ driver::Result<Scene> load_scene(const std::filesystem::path& meant, const Scene
     }
     return scene;
   }
-  SceneReading as_it_says = reading;
-  as_it_says.rate_factor = 1;
-  return find_and_read_scene(meant, as_it_says);
+  SceneReading unchanged_rate = reading;
+  unchanged_rate.rate_factor = 1;
+  return find_and_read_scene(meant, unchanged_rate);
 }
 
 }  // namespace thimble::scene

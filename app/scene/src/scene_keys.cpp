@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <functional>
 #include <set>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "arm_table.h"
+#include "keys/key_meanings.h"
 #include "read_scene.h"
 #include "thimble/render/effect/effect_table.h"
 #include "thimble/render/field/field_table.h"
@@ -32,8 +35,7 @@ std::string scene_of_everything() {
   return text + "hand: {path: [{t: 0, at: [0, 0, 0]}, {t: 1, on: mesh, near: [0, 0, 0]}]}\n";
 }
 
-/// Reads a text once as it is, and once more for each key that may be left out, as if it were
-/// there.
+/// Reads a text as it is, and again for each optional key, as if that key were present.
 void read_with_every_key(const std::string& text, KeyLog& keys,
                          const std::function<void(YamlFile&)>& read) {
   const auto once = [&] {
@@ -41,13 +43,13 @@ void read_with_every_key(const std::string& text, KeyLog& keys,
     if (yaml) read(*yaml);
   };
   once();
-  std::set<std::string> maps;  // of which all keys were pretended
-  // The list grows while what is pretended leads to further keys.
-  for (std::size_t i = 0; i < keys.all_looked().size(); ++i) {
-    const std::string name = keys.all_looked()[i];
+  std::set<std::string> maps;  // maps of which all keys were pretended at once
+  // The list grows while pretended keys lead to further keys.
+  for (std::size_t i = 0; i < keys.all_checked().size(); ++i) {
+    const std::string name = keys.all_checked()[i];
     keys.pretend(name);
     once();
-    // Some stand only together.
+    // Some keys are read only together with others of their map.
     const std::string map = name.substr(0, name.rfind('/')) + "/*";
     if (!maps.insert(map).second) continue;
     keys.pretend(map);
@@ -56,7 +58,7 @@ void read_with_every_key(const std::string& text, KeyLog& keys,
   keys.pretend({});
 }
 
-/// Returns the keys map by map: a map's first key decides where it stands.
+/// Returns the keys map by map, in the order in which the first key of each map was requested.
 std::vector<KeyNote> by_place(const std::vector<KeyNote>& notes) {
   std::vector<std::string> places;
   for (const KeyNote& note : notes) {
@@ -73,9 +75,27 @@ std::vector<KeyNote> by_place(const std::vector<KeyNote>& notes) {
   return sorted;
 }
 
-std::string left_out(const KeyNote& note) {
-  if (note.required) return "required";
-  return note.fallback.empty() ? "may be left out" : "default " + note.fallback;
+/// Adds the meanings to a log of keys. A key without one keeps an empty sentence, which a test
+/// reports.
+void add_meanings(std::vector<KeyNote>& notes, std::span<const KeyMeaning> meanings) {
+  for (KeyNote& note : notes) {
+    const KeyMeaning* const meaning = meaning_of(meanings, note.place, note.key);
+    if (meaning != nullptr) note.meaning = meaning->sentence;
+  }
+}
+
+/// Gives the keys of entries of `arms` the defaults of a single arm. The log has none for them,
+/// because its scene names no arm there.
+void copy_defaults_of_single_arm(std::vector<KeyNote>& notes) {
+  constexpr std::string_view kEntry = "arms[].";
+  for (KeyNote& note : notes) {
+    if (!note.place.starts_with(kEntry)) continue;
+    const std::string single = note.place.substr(kEntry.size());
+    const auto same = std::find_if(notes.begin(), notes.end(), [&](const KeyNote& other) {
+      return other.place == single && other.key == note.key;
+    });
+    if (same != notes.end()) note.fallback = same->fallback;
+  }
 }
 
 std::string title_of(const KeyNote& note) {
@@ -89,9 +109,16 @@ driver::Result<std::vector<KeyNote>> scene_keys() {
   KeyLog keys;
   SceneReading reading;
   reading.arm = "vintage_phantom";
-  read_with_every_key(scene_of_everything(), keys,
-                      [&](YamlFile& yaml) { (void)read_scene(yaml, "keys.yaml", reading); });
-  return by_place(keys.notes());
+  const auto read = [&](YamlFile& yaml) { (void)read_scene(yaml, "keys.yaml", reading); };
+  read_with_every_key(scene_of_everything(), keys, read);
+  // Some limits grow with the rate; the schema must accept files of every rate.
+  if (auto fast = YamlFile::parse(scene_of_everything() + "rate: 100000\n", "keys", &keys)) {
+    read(*fast);
+  }
+  std::vector<KeyNote> notes = by_place(keys.notes());
+  copy_defaults_of_single_arm(notes);
+  add_meanings(notes, scene_meanings());
+  return notes;
 }
 
 std::vector<KeyNote> arm_keys() {
@@ -103,7 +130,9 @@ std::vector<KeyNote> arm_keys() {
       read_with_every_key(text, keys, [](YamlFile& yaml) { (void)read_arm(yaml); });
     }
   }
-  return by_place(keys.notes());
+  std::vector<KeyNote> notes = by_place(keys.notes());
+  add_meanings(notes, arm_meanings());
+  return notes;
 }
 
 std::string key_text(const std::vector<KeyNote>& keys, const std::string& only) {
@@ -115,7 +144,8 @@ std::string key_text(const std::vector<KeyNote>& keys, const std::string& only) 
       text += fmt::format("{}{}\n", text.empty() ? "" : "\n", title_of(note));
       place = &note.place;
     }
-    text += fmt::format("  {:<22} {}; {}\n", note.key, note.what, left_out(note));
+    text += fmt::format("  {:<22} {}; {}\n", note.key, note.what, need_in_words(note));
+    if (!note.meaning.empty()) text += fmt::format("  {:<22} {}\n", "", note.meaning);
   }
   return text;
 }
@@ -125,10 +155,12 @@ std::string key_page(const std::vector<KeyNote>& keys) {
   const std::string* place = nullptr;
   for (const KeyNote& note : keys) {
     if (place == nullptr || *place != note.place) {
-      text += fmt::format("\n### {}\n\n| key | takes | |\n|---|---|---|\n", title_of(note));
+      text += fmt::format("\n### {}\n\n| key | meaning | values | |\n|---|---|---|---|\n",
+                          title_of(note));
       place = &note.place;
     }
-    text += fmt::format("| `{}` | {} | {} |\n", note.key, note.what, left_out(note));
+    text += fmt::format("| `{}` | {} | {} | {} |\n", note.key, note.meaning, note.what,
+                        need_in_words(note));
   }
   return text;
 }

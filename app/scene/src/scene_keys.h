@@ -19,7 +19,8 @@ THIMBLE_EXPORT driver::Result<std::vector<KeyNote>> scene_keys();
 /// never from the servo thread.
 THIMBLE_EXPORT std::vector<KeyNote> arm_keys();
 
-/// Returns keys as text, grouped by map; `only`: those of this name (empty: all).
+/// Returns keys as text, grouped by map, with the meaning of each; `only`: those of this name
+/// (empty: all).
 THIMBLE_EXPORT std::string key_text(const std::vector<KeyNote>& keys, const std::string& only);
 
 /// Returns keys as a page of the guide (Markdown), with a table for each map.

@@ -22,8 +22,8 @@ namespace {
 
 using MeshPointer = std::shared_ptr<const render::TriangleMesh>;
 
-/// Reads the mesh of every object and puts it into the world (m); a shape has one to be drawn, a
-/// field and a mesh on the disk an empty one.
+/// Reads the mesh of every object and places it in the world (m). For a shape it is the mesh to
+/// draw; for a field or a page file it is empty.
 driver::Result<std::vector<MeshPointer>> load_meshes(const Scene& scene, SharedMeshes& meshes,
                                                      std::vector<std::string>& notes) {
   std::vector<MeshPointer> meshes_W;
@@ -48,22 +48,22 @@ driver::Result<std::vector<MeshPointer>> load_meshes(const Scene& scene, SharedM
 
 using Touched = driver::Result<std::unique_ptr<render::ObjectTouch>>;
 
-/// Says which object a sentence is about.
+/// Returns the name of an object in messages: its file, or its name in the scene.
 std::string name_of(const SceneObject& object) {
   return object.mesh_file.empty() ? object.name : object.mesh_file.string();
 }
 
-/// Returns what a scene can do about a mesh that contact refuses, as a sentence to follow another.
+/// Returns a sentence with the remedy for a mesh that contact rejects; empty if there is none.
 std::string remedy_for(const SceneObject& object, const render::TriangleMesh& mesh_W) {
   if (object.mesh_file.empty() || object.sheet_thickness) return {};
   if (render::check_mesh(mesh_W).touchable()) return {};
-  return object.repair
-             ? " Set open: {thickness: 0.001} as well, to touch it as a sheet."
-             : " Set repair: true, and where that is not enough, open: {thickness: 0.001}; "
-               "thimble mesh tells which.";
+  return object.repair ? " Set open: {thickness: 0.001} as well, to touch it as a sheet."
+                       : " Set repair: true and, if that is not enough, open: {thickness: 0.001}; "
+                         "`thimble mesh` "
+                         "prints which one is needed.";
 }
 
-/// Returns what the surface of an object is made of.
+/// Returns the surface settings of an object.
 render::SurfaceChoice surface_of(const SceneObject& object) {
   return {.spring = {.stiffness = object.stiffness, .damping = object.damping},
           .effects = object.effects,
@@ -71,14 +71,14 @@ render::SurfaceChoice surface_of(const SceneObject& object) {
           .shape = object.body.shape};
 }
 
-/// Returns an error about an object that contact, or a body, refuses.
+/// Returns the error for an object that contact or a body rejects.
 driver::Error refused(const SceneObject& object, const render::TriangleMesh& mesh_W,
                       const driver::Error& error) {
   return driver::Error{name_of(object) + ": " + error.message + remedy_for(object, mesh_W)};
 }
 
-/// Builds the force law of what is touched in memory, as it stands still. Base points that move
-/// have a mesh and a search of their own.
+/// Builds the force law of an object in memory that does not move. If the base points of its
+/// surface move, it has its own mesh and search.
 Touched build_still(const SceneObject& object, const MeshPointer& mesh_W, SharedMeshes& meshes) {
   const render::SurfaceChoice surface = surface_of(object);
   if (object.shape) return render::build_primitive_touch(object.shape->shape_W, surface);
@@ -88,7 +88,7 @@ Touched build_still(const SceneObject& object, const MeshPointer& mesh_W, Shared
   return render::build_object_touch(**still, *mesh_W, object.contact, surface);
 }
 
-/// Builds the force law of one object that one arm touches.
+/// Builds the force law of one object that is touched by one arm.
 Touched build_one(const SceneObject& object, const MeshPointer& mesh_W, SharedMeshes& meshes,
                   double reach, std::vector<std::shared_ptr<render::PagedSurface>>& pages) {
   if (object.build_field) return object.build_field();
@@ -111,18 +111,18 @@ Touched build_one(const SceneObject& object, const MeshPointer& mesh_W, SharedMe
   return touch;
 }
 
-/// Builds the force law of one object on each of several arms: each has its own contact with it,
-/// and all of them the body that moves.
+/// Builds the force law of one object for each of several arms. Each arm has its own contact with
+/// the object, and all share the moving body.
 driver::Result<render::SharedObject> build_shared(const SceneObject& object,
                                                   const MeshPointer& mesh_W, SharedMeshes& meshes,
                                                   std::size_t arms) {
   render::SharedObject shared;
-  const bool gives_way = object.body.dent || object.body.shape.named();
-  if (gives_way || object.paged) {
+  const bool deforms = object.body.dent || object.body.shape.named();
+  if (deforms || object.paged) {
     return driver::Error{fmt::format(
-        "{}: {} can be touched by one arm alone so far, and the scene has {}; {}.", name_of(object),
-        gives_way ? "an object whose surface gives way (dent, plastic, snap)" : "a mesh in pages",
-        arms, gives_way ? "keep body: {motion: ...}" : "name the mesh itself")};
+        "{}: {} can be touched by one arm only, and the scene has {}; {}.", name_of(object),
+        deforms ? "an object whose surface deforms (dent, plastic, snap)" : "a page file", arms,
+        deforms ? "keep only body: {motion: ...}" : "use a mesh file instead")};
   }
   for (std::size_t arm = 0; arm < arms; ++arm) {
     if (object.build_field) {

@@ -8,27 +8,27 @@ namespace thimble::scene {
 namespace {
 
 std::atomic<bool> interrupted{false};
-std::atomic<std::int64_t> first_signal_ns{0};  // 0: none yet
+std::atomic<std::int64_t> first_signal_ns{0};  // 0: no signal yet
 std::atomic<int> at_stake{0};
 std::atomic<int> writing{0};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
                   std::atomic<std::int64_t>::is_always_lock_free,
-              "A signal handler may not lock.");
+              "A signal handler must not use locks.");
 
 constexpr int kSignals[] = {SIGINT,  SIGTERM,   SIGHUP,  SIGQUIT, SIGUSR1, SIGUSR2,  SIGALRM,
                             SIGPROF, SIGVTALRM, SIGXCPU, SIGIO,   SIGPWR,  SIGSTKFLT};
 
 std::int64_t monotonic_ns() noexcept {
   timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);  // POSIX names it as safe in a handler
+  clock_gettime(CLOCK_MONOTONIC, &now);  // async-signal-safe (POSIX)
   return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
 }
 
 timer_t hang_timer{};
 std::atomic<bool> has_hang_timer{false};
 
-/// Lets the timer send SIGTERM to this process once more after a time.
-void remind_after(std::int64_t time_ns) noexcept {
+/// Starts the timer, which sends SIGTERM to this process once after the given time.
+void repeat_sigterm_after(std::int64_t time_ns) noexcept {
   if (!has_hang_timer.load()) return;
   const itimerspec once{
       .it_interval = {},
@@ -40,10 +40,10 @@ void end_by(int number) noexcept {
   struct sigaction usual {};
   usual.sa_handler = SIG_DFL;
   sigaction(number, &usual, nullptr);
-  raise(number);  // takes effect when the handler returns
+  raise(number);  // delivered when the handler returns
 }
 
-// Calls nothing but what POSIX names as safe in a handler: clock_gettime, sigaction, raise,
+// Calls only functions that are async-signal-safe (POSIX): clock_gettime, sigaction, raise,
 // timer_settime.
 void on_signal(int number, siginfo_t* info, void*) {
   const int error = errno;
@@ -52,9 +52,9 @@ void on_signal(int number, siginfo_t* info, void*) {
   std::int64_t first_ns = 0;
   const std::int64_t now_ns = monotonic_ns();
   if (reminder) {
-    // What holds an arm or writes its results is never ended by a timer, only by a person.
+    // A process that holds an arm or writes results is never ended by the timer, only by a person.
     if (at_stake.load() > 0 || writing.load() > 0) {
-      remind_after(kOneRequest_ns);
+      repeat_sigterm_after(kOneRequest_ns);
     } else {
       end_by(number);
     }
@@ -64,13 +64,13 @@ void on_signal(int number, siginfo_t* info, void*) {
         ends_at_once(now_ns - first_ns, at_stake.load() > 0)) {
       end_by(number);
     } else if (number == SIGTERM) {
-      remind_after(kHangingMost_ns);
+      repeat_sigterm_after(kBlockedTimeMax_ns);
     }
   }
   errno = error;
 }
 
-/// Makes the timer of this process, once; a child has none.
+/// Creates the timer of this process, if it does not exist. A child process does not inherit it.
 void make_hang_timer() {
   if (has_hang_timer.load()) return;
   sigevent event{};
@@ -87,7 +87,7 @@ void install(int number, bool even_if_ignored) {
   if (ignored ? !even_if_ignored : before.sa_handler != SIG_DFL) return;
   struct sigaction action {};
   action.sa_sigaction = on_signal;
-  // Nothing that waits for a disk is to fail for a signal.
+  // With SA_RESTART, a signal does not interrupt system calls that wait for a disk.
   action.sa_flags = SA_RESTART | SA_SIGINFO;
   sigfillset(&action.sa_mask);
   sigaction(number, &action, nullptr);
@@ -97,8 +97,8 @@ void install(int number, bool even_if_ignored) {
 
 const std::atomic<bool>& catch_interrupts() {
   make_hang_timer();
-  // What a script runs beside itself ignores SIGINT and SIGQUIT, and is to leave by them all the
-  // same. Whoever started us by nohup wants us to outlive the terminal.
+  // A background process of a shell script ignores SIGINT and SIGQUIT, but must end on them too.
+  // SIGHUP stays ignored under nohup, because the process should then survive the terminal.
   for (const int number : kSignals) install(number, number != SIGHUP);
   for (int number = SIGRTMIN; number <= SIGRTMAX; ++number) install(number, false);
   return interrupted;
@@ -108,17 +108,17 @@ bool stop_asked() noexcept {
   return interrupted.load();
 }
 
-void leave_rather_than_stop() {
+void treat_sigtstp_as_exit() {
   install(SIGTSTP, true);
   std::signal(SIGTTIN, SIG_IGN);
   std::signal(SIGTTOU, SIG_IGN);
 }
 
-LeavingGuard::LeavingGuard() noexcept {
+ForceExitGuard::ForceExitGuard() noexcept {
   at_stake.fetch_add(1);
 }
 
-LeavingGuard::~LeavingGuard() {
+ForceExitGuard::~ForceExitGuard() {
   at_stake.fetch_sub(1);
 }
 
@@ -130,7 +130,7 @@ WritingGuard::~WritingGuard() {
   writing.fetch_sub(1);
 }
 
-void outlive_trouble_with_files() {
+void ignore_sigpipe_and_sigxfsz() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 }

@@ -13,9 +13,9 @@
 namespace thimble::scene {
 namespace {
 
-constexpr int kPatience_ms = 2000;
+constexpr int kAnswerTimeout_ms = 2000;
 
-/// A pipe whose ends no other child inherits.
+/// Pipe whose ends are not inherited by other child processes.
 struct Pipe {
   int read = -1, write = -1;
   Pipe() {
@@ -28,7 +28,8 @@ struct Pipe {
   }
 };
 
-/// Starts the holder: it says "held" once it has the lock, and ends with its input.
+/// Starts the child process that holds the lock. It prints "held" when it has the lock, and exits
+/// when its input is closed.
 pid_t start(const Pipe& input, const Pipe& output) {
   const char* const arguments[] = {"systemd-inhibit",
                                    "--what=sleep:idle:handle-lid-switch",
@@ -46,8 +47,8 @@ pid_t start(const Pipe& input, const Pipe& output) {
   posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  // A group of its own: Ctrl-C at the terminal ends the run first, and the lock with it. No signal
-  // that this process holds back is held back there.
+  // The child has its own process group: Ctrl-C in the terminal ends the run first, which then
+  // releases the lock. Signals that this process blocks are not blocked in the child.
   sigset_t none, all;
   sigemptyset(&none);
   sigfillset(&all);
@@ -69,7 +70,7 @@ pid_t start(const Pipe& input, const Pipe& output) {
 SleepLock::SleepLock() {
   const Pipe input, output;
   if (input.write < 0 || output.write < 0) {
-    note_ = "The computer is not kept awake: no pipe could be made.";
+    note_ = "Cannot keep the computer awake: no pipe could be created.";
     input.close_all();
     output.close_all();
     return;
@@ -80,20 +81,20 @@ SleepLock::SleepLock() {
   input_ = input.write;
   if (child_ < 0) {
     note_ =
-        "The computer is not kept awake during the run: systemd-inhibit is not installed. See that "
-        "it does not sleep.";
+        "Cannot keep the computer awake during the run: systemd-inhibit is not installed. Make "
+        "sure that it does not sleep.";
   } else {
     pollfd answer{.fd = output.read, .events = POLLIN, .revents = 0};
     int ready = 0;
     do {
-      ready = poll(&answer, 1, kPatience_ms);
+      ready = poll(&answer, 1, kAnswerTimeout_ms);
     } while (ready < 0 && errno == EINTR);
     char text[8];
     held_ = ready > 0 && read(output.read, text, sizeof text) > 0;
     if (!held_) {
       note_ =
-          "The computer is not kept awake during the run: logind gave no lock against sleep. See "
-          "that it does not sleep.";
+          "Cannot keep the computer awake during the run: logind gave no lock against sleep. Make "
+          "sure that it does not sleep.";
     }
   }
   close(output.read);
@@ -108,13 +109,14 @@ void SleepLock::end() noexcept {
   if (input_ >= 0) close(input_);
   input_ = -1;
   if (child_ < 0) return;
-  // It ends with its input. One that does not is ended: nothing of it is worth waiting for.
-  constexpr int kLooks = 100;
-  constexpr timespec kLook{.tv_sec = 0, .tv_nsec = 10'000'000};
+  // The child exits when its input is closed. If it does not, it is killed, because it does nothing
+  // else.
+  constexpr int kChecksMax = 100;
+  constexpr timespec kCheckPeriod{.tv_sec = 0, .tv_nsec = 10'000'000};
   if (!held_) kill(-child_, SIGTERM);
   for (int look = 0; waitpid(child_, nullptr, WNOHANG) == 0; ++look) {
-    if (look == kLooks) kill(-child_, SIGKILL);
-    nanosleep(&kLook, nullptr);
+    if (look == kChecksMax) kill(-child_, SIGKILL);
+    nanosleep(&kCheckPeriod, nullptr);
   }
   child_ = -1;
 }

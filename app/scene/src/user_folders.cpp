@@ -12,19 +12,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The home folder of a user that has none. No folder can be made there, so that each write fails
-// with a message that contains this path.
+// Home folder of a user without one. No folder can be created in it, so each write fails with a
+// message that contains this path.
 constexpr const char* kNoHome = "/dev/null/HOME-is-not-set";
 
-/// Returns the folder of an environment variable; empty if it is not set, or relative, which counts
-/// as not set [XDG Base Directory Specification].
+/// Returns the folder that an environment variable names. Empty if the variable is not set or names
+/// a relative path, which counts as not set [XDG Base Directory Specification].
 fs::path named_by(const char* variable) {
   const char* named = std::getenv(variable);
   const fs::path folder = named != nullptr ? named : "";
   return folder.is_absolute() ? folder : fs::path();
 }
 
-/// Returns the user's home: $HOME, or else what the system's list of users says.
+/// Returns the user's home folder: $HOME, or else the entry of the user database.
 fs::path home() {
   if (fs::path named = named_by("HOME"); !named.empty()) return named;
   std::array<char, 16'384> texts{};

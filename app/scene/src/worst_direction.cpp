@@ -20,20 +20,20 @@ TipLimits tip_limits(const Eigen::Matrix3d& J_BT, const Eigen::Matrix3d& mass,
   const Eigen::FullPivLU<Eigen::Matrix3d> lu(J_BT);
   if (!lu.isInvertible()) return {};
   const Eigen::Matrix3d J_TB = lu.inverse();
-  const auto least = [](const Eigen::Matrix3d& symmetric) {
+  const auto smallest_eigenvalue = [](const Eigen::Matrix3d& symmetric) {
     return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(symmetric, Eigen::EigenvaluesOnly)
         .eigenvalues()
         .minCoeff();
   };
   return {.encoder_step = tip_step(J_BT, joint_steps),
-          .damping = least(J_TB.transpose() * damping * J_TB),
-          .mass = least(J_TB.transpose() * mass * J_TB)};
+          .damping = smallest_eigenvalue(J_TB.transpose() * damping * J_TB),
+          .mass = smallest_eigenvalue(J_TB.transpose() * mass * J_TB)};
 }
 
 std::optional<Eigen::Matrix3d> jacobian_at(const ArmFile& arm, const Eigen::Vector3d& p_WT) {
   const auto q = joint_angles_at(arm, p_WT);
   if (!q) return {};
-  if (arm.is<driver::ToldArm>()) return Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+  if (arm.is<driver::VendorPoseArm>()) return Eigen::Matrix3d(Eigen::Matrix3d::Identity());
   const Eigen::Vector3d counts = arm.model.exact_counts(*q);
   driver::ArmReading reading;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -5,7 +5,7 @@
 
 namespace thimble::session {
 
-EnterKey look_for_enter() {
+EnterKey check_enter_key() {
   pollfd terminal{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
   if (poll(&terminal, 1, 0) <= 0) return EnterKey::kNothing;
   char ignored[64];

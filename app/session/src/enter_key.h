@@ -12,6 +12,6 @@ enum class EnterKey {
 };
 
 /// Checks, without waiting, whether the user pressed Enter. Real-time: never from the servo thread.
-THIMBLE_EXPORT EnterKey look_for_enter();
+THIMBLE_EXPORT EnterKey check_enter_key();
 
 }  // namespace thimble::session

@@ -78,7 +78,7 @@ void HoldKey::read_terminal(HeldKey& key) {
 }
 
 void HoldKey::watch() {
-  constexpr int kLook_ms = 5;
+  constexpr int kPoll_ms = 5;
   const driver::Clock& clock = session_.setup().clock();
   const SharedRun* const shared = session_.shared();
   HeldKey key;
@@ -87,11 +87,11 @@ void HoldKey::watch() {
   while (!stop_.load()) {
     pollfd terminal{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
     if (closed_.load()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(kLook_ms));
-    } else if (poll(&terminal, 1, kLook_ms) > 0) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(kPoll_ms));
+    } else if (poll(&terminal, 1, kPoll_ms) > 0) {
       read_terminal(key);
     }
-    if (shared != nullptr) viewer.look(shared->key_held(), clock.now_ns());
+    if (shared != nullptr) viewer.update(shared->key_held(), clock.now_ns());
     const std::int64_t until = std::max(key.until_ns(), viewer.until_ns());
     if (until <= until_ns || until <= clock.now_ns()) continue;
     until_ns = until;

@@ -27,18 +27,18 @@ THIMBLE_EXPORT driver::Result<driver::HoldToRun> hold_named(const std::string& n
 class HeldKey {
  public:
   // [chosen: terminals repeat 11 to 30 times a second, after a quarter to two thirds of a second]
-  static constexpr std::int64_t kGapMost_ns = 120'000'000;
+  static constexpr std::int64_t kRepeatIntervalMax_ns = 120'000'000;
   static constexpr std::int64_t kLasts_ns = 150'000'000;  ///< Time for which one press counts, ns.
-  static constexpr int kPressesLeast = 3;
+  static constexpr int kPressesMin = 3;
 
   /// Records a press.
   void press(std::int64_t now_ns) noexcept {
-    presses_ = now_ns - last_ns_ <= kGapMost_ns ? presses_ + 1 : 1;
+    presses_ = now_ns - last_ns_ <= kRepeatIntervalMax_ns ? presses_ + 1 : 1;
     last_ns_ = now_ns;
   }
   /// Returns the time until which the key counts as held; before `now_ns` if it is not held.
   std::int64_t until_ns() const noexcept {
-    return presses_ >= kPressesLeast ? last_ns_ + kLasts_ns : last_ns_;
+    return presses_ >= kPressesMin ? last_ns_ + kLasts_ns : last_ns_;
   }
 
  private:
@@ -55,7 +55,7 @@ class ViewerKey {
   explicit ViewerKey(std::uint64_t number) noexcept : number_(number) {}
 
   /// Updates the number.
-  void look(std::uint64_t number, std::int64_t now_ns) noexcept {
+  void update(std::uint64_t number, std::int64_t now_ns) noexcept {
     if (number == number_) return;
     number_ = number;
     until_ns_ = now_ns + HeldKey::kLasts_ns;

@@ -8,7 +8,7 @@
 namespace thimble::session {
 namespace {
 
-std::string hold_in_words(const driver::HoldToRun& hold) {
+std::string hold_text(const driver::HoldToRun& hold) {
   if (!hold.named()) return "none";
   std::string words;
   for (int button = 0; button < 16; ++button) {
@@ -19,7 +19,7 @@ std::string hold_in_words(const driver::HoldToRun& hold) {
   return words;
 }
 
-std::string power_in_words(const driver::GateLimits& limits) {
+std::string power_text(const driver::GateLimits& limits) {
   if (limits.power_max <= 0) return "mean power: none";
   return fmt::format("mean power {:g} W over {:g} s", limits.power_max, limits.power_time);
 }
@@ -38,13 +38,12 @@ std::string limits_in_force(const Setup& setup, std::size_t arm) {
       "force held without new counts for at most {:g} s, walls of {:g} N/m from ({:g}, {:g}, {:g}) "
       "to ({:g}, {:g}, {:g}) mm with a fault {:g} mm behind them, enabling input: {}, feel check: "
       "{}.",
-      limits.force_max, limits.speed_max, power_in_words(limits), limits.rise_max,
-      limits.soft_start, limits.reopen, ms(limits.stall_ns), ms(limits.watchdog_ns),
-      ms(settings.silence_limit_ns),
+      limits.force_max, limits.speed_max, power_text(limits), limits.rise_max, limits.soft_start,
+      limits.reopen, ms(limits.stall_ns), ms(limits.watchdog_ns), ms(settings.silence_limit_ns),
       scene::kEnergyStageNames[static_cast<std::size_t>(settings.energy.stage)],
-      settings.motion.hold_most, walls.stiffness, 1e3 * walls.min_W.x(), 1e3 * walls.min_W.y(),
+      settings.motion.max_hold, walls.stiffness, 1e3 * walls.min_W.x(), 1e3 * walls.min_W.y(),
       1e3 * walls.min_W.z(), 1e3 * walls.max_W.x(), 1e3 * walls.max_W.y(), 1e3 * walls.max_W.z(),
-      1e3 * walls.beyond, hold_in_words(settings.hold), name(setup.feel_check(arm)));
+      1e3 * walls.beyond, hold_text(settings.hold), name(setup.feel_check(arm)));
 }
 
 }  // namespace thimble::session

@@ -59,7 +59,7 @@ void MoreArms::begin(const driver::ServoSettings& settings) noexcept {
   }
 }
 
-void MoreArms::take_all_forces() noexcept {
+void MoreArms::remove_forces_on_fault() noexcept {
   if (setup_.scene().faults != scene::FaultRule::kTogether) return;
   bool fault = false;
   for (std::size_t i = 0; i < setup_.arms(); ++i) {
@@ -82,7 +82,7 @@ std::optional<driver::ServoEnd> MoreArms::tick(RunLoop& first, std::optional<dri
     if (end) break;
     end = arm->loop.tick(stop);
   }
-  take_all_forces();
+  remove_forces_on_fault();
   if (!end) {
     setup_.objects().step_bodies(1e-9 * static_cast<double>(setup_.period_ns()));
     return end;

@@ -65,7 +65,7 @@ class MoreArms {
  private:
   /// Switches off the force of all arms if one is in fault and the scene requests it. Real-time:
   /// safe.
-  void take_all_forces() noexcept;
+  void remove_forces_on_fault() noexcept;
 
   Setup& setup_;
   std::vector<std::unique_ptr<OtherArmSharing>> sharing_;

@@ -35,14 +35,14 @@ bool agree_to_forces(const Session& session, bool agreed, const Terminal& termin
     if (!setup.real_arm(i)) continue;
     const driver::FoundArm& arm = *setup.real_arm(i);
     const bool at_home = !setup.homed() && setup.start_pose(i).has_home();
-    terminal.tell(
+    terminal.print_line(
         fmt::format("{} {} is about to apply forces. Keep clear of it, hold its grip{}, keep its "
                     "power switch within reach.",
                     arm.arm, arm.name(), at_home ? " in the home pose" : ""));
   }
   if (agreed) return true;
   if (!terminal.there) {
-    terminal.tell("thimble: There is no terminal to confirm; pass --yes to agree.");
+    terminal.print_line("thimble: There is no terminal to confirm; pass --yes to agree.");
     return false;
   }
   terminal.ask("Press Enter to start, Ctrl-C to quit.");

@@ -26,64 +26,65 @@ StartPose place_of(const Setup& setup, std::size_t arm) {
 
 ReplugWatch::ReplugWatch(driver::Device& device,
                          const driver::Snapshot<driver::TickRecord>& snapshot,
-                         const StartPose& place, const driver::FoundArm& arm, Ways ways,
+                         const StartPose& place, const driver::FoundArm& arm, Access access,
                          Terminal terminal)
     : device_(device),
       snapshot_(snapshot),
       place_(place),
       arm_(arm),
-      ways_(std::move(ways)),
+      access_(std::move(access)),
       terminal_(std::move(terminal)) {}
 
 void ReplugWatch::step() {
   driver::TickRecord record;
   if (!snapshot_.load(record)) return;
   if (record.fault == driver::Fault::kNone) {
-    fault_reported_ = gone_ = returned_ = home_asked_ = false;
+    fault_reported_ = disconnected_ = reconnected_ = home_requested_ = false;
     terminal_.key();  // Discards an earlier Enter, which must not count for a later fault.
     return;
   }
   if (!fault_reported_) {
     fault_reported_ = true;
-    terminal_.tell("\nForce is off (" + std::string(name(record.fault)) + "). " +
-                   std::string(describe(record.fault)));
-    const bool home_asked_next = record.home_needed && place_.has_home();
-    if (record.link != LinkState::kLost && !home_asked_next) {
-      terminal_.tell("Press Enter to enable forces again.");
+    terminal_.print_line("\nForce is off (" + std::string(name(record.fault)) + "). " +
+                         std::string(describe(record.fault)));
+    const bool home_requested_next = record.home_needed && place_.has_home();
+    if (record.link != LinkState::kLost && !home_requested_next) {
+      terminal_.print_line("Press Enter to enable forces again.");
     }
     if (record.fault == driver::Fault::kTransportLost)
-      gone_ = true;  // the message of the fault says so already
+      disconnected_ = true;  // the message of the fault says so already
     terminal_.key();
   }
   follow_link(record);
-  if (terminal_.key() == EnterKey::kPressed) let_through(record);
+  if (terminal_.key() == EnterKey::kPressed) enable_forces(record);
 }
 
 void ReplugWatch::follow_link(const driver::TickRecord& record) {
   if (record.link == LinkState::kLost) {
-    if (!gone_) {
-      terminal_.tell(
-          (returned_ ? "The arm was disconnected again. " : "The arm was disconnected. ") +
+    if (!disconnected_) {
+      terminal_.print_line(
+          (reconnected_ ? "The arm was disconnected again. " : "The arm was disconnected. ") +
           plug_in());
     }
-    gone_ = true;
+    disconnected_ = true;
     search();
     return;
   }
   if (record.link != LinkState::kConnected) return;
-  if (gone_) {
-    gone_ = false;
-    returned_ = home_asked_ = true;
-    terminal_.tell(place_.has_home()
-                       ? "The arm is connected again. Its counters started at zero in the pose in "
-                         "which it was plugged in, which must have been its home pose. Move it to "
-                         "its home pose and press Enter to enable forces."
-                       : "The arm is connected again and has found its zero. Hold its grip in the "
-                         "workspace and press Enter to enable forces.");
+  if (disconnected_) {
+    disconnected_ = false;
+    reconnected_ = home_requested_ = true;
+    terminal_.print_line(
+        place_.has_home()
+            ? "The arm is connected again. Its counters started at zero in the pose in "
+              "which it was plugged in, which must have been its home pose. Move it to "
+              "its home pose and press Enter to enable forces."
+            : "The arm is connected again and has found its zero. Hold its grip in the "
+              "workspace and press Enter to enable forces.");
     terminal_.key();
-  } else if (record.home_needed && !home_asked_ && place_.has_home()) {
-    home_asked_ = true;
-    terminal_.tell(
+  } else if (record.home_needed && !home_requested_ && place_.has_home()) {
+    home_requested_ = true;
+    terminal_.print_line(
         "The arm was silent or its position jumped. Its board may have restarted, so its counters "
         "may be wrong. Move it to its home pose and press Enter to enable forces.");
     terminal_.key();
@@ -97,35 +98,35 @@ std::string ReplugWatch::plug_in() const {
 void ReplugWatch::search() {
   if (pause_-- > 0) return;
   pause_ = kStepsBetweenSearches;
-  const auto found = ways_.find(arm_);
+  const auto found = access_.find(arm_);
   if (!found) return;
   // Closed first, because a vendor's library can open its arm only once.
   device_.close_lost_link();
-  auto link = ways_.open(*found);
+  auto link = access_.open(*found);
   if (!link) return;  // it may still be starting up; the next search tries again
   if (const auto taken = device_.offer(std::move(link).value()); !taken) {
-    terminal_.tell(taken.error().message);
+    terminal_.print_line(taken.error().message);
     return;
   }
   arm_ = *found;
   scene::logger().info("{} is connected again: its new link is passed to the loop.", arm_.name());
 }
 
-void ReplugWatch::let_through(const driver::TickRecord& record) {
+void ReplugWatch::enable_forces(const driver::TickRecord& record) {
   if (record.link == LinkState::kLost)
-    return terminal_.tell("The arm is disconnected. " + plug_in());
+    return terminal_.print_line("The arm is disconnected. " + plug_in());
   if (record.link == LinkState::kSilent) {
-    return terminal_.tell(
+    return terminal_.print_line(
         "The arm is silent, so it gets no force. Check its power; if it stays silent, unplug it. " +
         plug_in());
   }
   const Eigen::Map<const Eigen::Vector3d> p_WT(record.p_WT.data());
-  const std::string trouble = place_.trouble(p_WT, record.home_needed);
-  if (trouble.empty()) {
+  const std::string problem = place_.problem(p_WT, record.home_needed);
+  if (problem.empty()) {
     device_.ask_to_activate(record.home_needed ? driver::HomeCheck::kPassed
                                                : driver::HomeCheck::kNone);
   } else {
-    terminal_.tell(trouble + " Then press Enter.");
+    terminal_.print_line(problem + " Then press Enter.");
   }
 }
 

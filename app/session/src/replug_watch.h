@@ -25,7 +25,7 @@ class Session;
 class ReplugWatch {
  public:
   /// Functions to access the arm again; replaced in tests.
-  struct Ways {
+  struct Access {
     /// Returns the same arm if it is connected again.
     std::function<std::optional<driver::FoundArm>(const driver::FoundArm& lost)> find;
     /// Opens the link to the arm.
@@ -35,7 +35,8 @@ class ReplugWatch {
 
   /// Monitors `arm`, which `device` drives and whose ticks are in `snapshot`.
   ReplugWatch(driver::Device& device, const driver::Snapshot<driver::TickRecord>& snapshot,
-              const StartPose& place, const driver::FoundArm& arm, Ways ways, Terminal terminal);
+              const StartPose& place, const driver::FoundArm& arm, Access access,
+              Terminal terminal);
 
   /// Checks once; call it a few times a second.
   void step();
@@ -44,18 +45,18 @@ class ReplugWatch {
   void follow_link(const driver::TickRecord& record);
   std::string plug_in() const;
   void search();
-  void let_through(const driver::TickRecord& record);
+  void enable_forces(const driver::TickRecord& record);
 
   driver::Device& device_;
   const driver::Snapshot<driver::TickRecord>& snapshot_;
   StartPose place_;
   driver::FoundArm arm_;
-  Ways ways_;
+  Access access_;
   Terminal terminal_;
   bool fault_reported_ = false;  // True if the user was informed that the force is off.
-  bool gone_ = false;            // True if the arm was disconnected and has not reported again.
-  bool returned_ = false;        // True if the arm was reconnected since the fault.
-  bool home_asked_ = false;      // True if the user was informed that the home pose is required.
+  bool disconnected_ = false;    // True if the arm was disconnected and has not reported again.
+  bool reconnected_ = false;     // True if the arm was reconnected since the fault.
+  bool home_requested_ = false;  // True if the user was informed that the home pose is required.
   int pause_ = 0;                // Steps until the next search.
 };
 

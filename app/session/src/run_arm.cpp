@@ -8,7 +8,7 @@
 namespace thimble::session {
 
 driver::Result<RunArm> choose_run_arm(const std::string& device,
-                                      const scene::RealArmRequest& request,
+                                      const scene::ArmPolicyRequest& request,
                                       const FindArms& find_arms) {
   RunArm arm;
   if (device == "sim") return arm;
@@ -18,15 +18,15 @@ driver::Result<RunArm> choose_run_arm(const std::string& device,
   if (!chosen) return chosen.error();
   arm.real = std::move(chosen).value();
   if (!arm.real) {
-    arm.told.push_back("No arm is connected: the simulated arm is used.");
+    arm.warnings.push_back("No arm is connected: the simulated arm is used.");
     const std::string left = plugged_in ? scene::boards_left_out(*plugged_in) : "";
-    if (!left.empty()) arm.told.push_back(left);
+    if (!left.empty()) arm.warnings.push_back(left);
     return arm;
   }
-  auto terms = scene::terms_for(*arm.real, request);
+  auto terms = scene::find_arm_policy(*arm.real, request);
   if (!terms) return terms.error();
   arm.terms = std::move(terms).value();
-  arm.told = arm.terms->told;
+  arm.warnings = arm.terms->warnings;
   return arm;
 }
 
@@ -36,7 +36,7 @@ bool RunArms::real() const {
 }
 
 driver::Result<RunArms> choose_run_arms(const std::vector<std::string>& devices,
-                                        const scene::RealArmRequest& request,
+                                        const scene::ArmPolicyRequest& request,
                                         const FindArms& find_arms) {
   RunArms arms;
   if (devices.empty()) return arms;
@@ -44,7 +44,7 @@ driver::Result<RunArms> choose_run_arms(const std::vector<std::string>& devices,
     auto one = choose_run_arm(devices.front(), request, find_arms);
     if (!one) return one.error();
     arms.one = std::move(one).value();
-    arms.told = arms.one.told;
+    arms.warnings = arms.one.warnings;
     return arms;
   }
   // Arm of the scene to which each board is assigned.
@@ -62,8 +62,8 @@ driver::Result<RunArms> choose_run_arms(const std::vector<std::string>& devices,
     }
     auto one = choose_run_arm(device.substr(equals + 1), request, find_arms);
     if (!one) return driver::Error{"The arm \"" + name + "\": " + one.error().message};
-    for (const std::string& sentence : one->told) {
-      arms.told.push_back("The arm \"" + name + "\": " + sentence);
+    for (const std::string& sentence : one->warnings) {
+      arms.warnings.push_back("The arm \"" + name + "\": " + sentence);
     }
     if (!one->real) {
       arms.several.emplace(name, std::nullopt);

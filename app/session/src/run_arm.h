@@ -9,16 +9,16 @@
 #include "thimble/driver/discovery.h"
 #include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
-#include "thimble/scene/real_arm_terms.h"
+#include "thimble/scene/arm_policy.h"
 #include "thimble/session/session.h"
 
 namespace thimble::session {
 
 /// Arm of a run.
 struct RunArm {
-  std::optional<driver::FoundArm> real;      ///< Real arm; empty: the simulated one is used.
-  std::optional<scene::RealArmTerms> terms;  ///< Terms of use of a real arm.
-  std::vector<std::string> told;             ///< Warnings to show the user, one sentence each.
+  std::optional<driver::FoundArm> real;   ///< Real arm; empty: the simulated one is used.
+  std::optional<scene::ArmPolicy> terms;  ///< Terms of use of a real arm.
+  std::vector<std::string> warnings;      ///< Warnings to show the user, one sentence each.
 };
 
 /// Function that lists the connected boards; replaced in tests.
@@ -28,7 +28,7 @@ using FindArms = std::function<driver::Result<std::vector<driver::FoundArm>>()>;
 /// (scene::choose_arm). If boards cannot be listed, there are none. The error says what to do.
 /// Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<RunArm> choose_run_arm(
-    const std::string& device, const scene::RealArmRequest& request,
+    const std::string& device, const scene::ArmPolicyRequest& request,
     const FindArms& find_arms = [] { return driver::find_arms(); });
 
 /// Arms of a run, of a scene with one or with several arms.
@@ -37,7 +37,7 @@ struct THIMBLE_EXPORT RunArms {
   /// Arms of a scene with several arms; see SessionOptions::real_arms.
   std::map<std::string, std::optional<RealArmUse>> several;
   /// Warnings to show the user, one sentence each.
-  std::vector<std::string> told;
+  std::vector<std::string> warnings;
 
   /// Returns whether one of the arms is real.
   bool real() const;
@@ -47,7 +47,7 @@ struct THIMBLE_EXPORT RunArms {
 /// real arm of a scene. The error says what to do, also if two names select the same arm.
 /// Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<RunArms> choose_run_arms(
-    const std::vector<std::string>& devices, const scene::RealArmRequest& request,
+    const std::vector<std::string>& devices, const scene::ArmPolicyRequest& request,
     const FindArms& find_arms = [] { return driver::find_arms(); });
 
 }  // namespace thimble::session

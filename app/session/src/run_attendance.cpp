@@ -23,7 +23,7 @@ std::string progress_line(const driver::TickRecord& record, double total) {
                      force, record.depth * 1e3);
 }
 
-std::string HeatWarning::look(const driver::TickRecord& record) {
+std::string HeatWarning::check(const driver::TickRecord& record) {
   const double heat = *std::max_element(record.heat.begin(), record.heat.end());
   if (given_ || !(heat >= driver::HeatGuard::kWarning)) return {};
   given_ = true;
@@ -44,17 +44,17 @@ void keep_black_boxes(Session& session, bool run_is_over) {
   }
 }
 
-RunAttendance::RunAttendance(Session& session, ReplugWatches* watch, ViewerRequestHandler* desk,
+RunAttendance::RunAttendance(Session& session, ReplugWatches* watch, ViewerRequestHandler* handler,
                              bool on_terminal)
     : session_(session),
       watch_(watch),
-      desk_(desk),
+      handler_(handler),
       on_terminal_(on_terminal),
       total_(static_cast<double>(session.setup().ticks()) *
              static_cast<double>(session.setup().period_ns()) * 1e-9),
       withdrawn_(session.arms()) {}
 
-void RunAttendance::warn_of_carried() {
+void RunAttendance::warn_of_compensation() {
   for (std::size_t arm = 0; arm < withdrawn_.size(); ++arm) {
     const std::uint64_t now = session_.carry_withdrawn(arm);
     if (now == withdrawn_[arm]) continue;
@@ -70,12 +70,12 @@ void RunAttendance::warn_of_carried() {
 
 void RunAttendance::step() {
   if (watch_ != nullptr) watch_->step();
-  if (desk_ != nullptr) desk_->step();
+  if (handler_ != nullptr) handler_->step();
   keep_black_boxes(session_, false);
-  warn_of_carried();
+  warn_of_compensation();
   driver::TickRecord record;
   if (!session_.newest().load(record)) return;
-  if (const std::string hot = heat_.look(record); !hot.empty()) {
+  if (const std::string hot = heat_.check(record); !hot.empty()) {
     scene::logger().warn("{}", hot);
   }
   if (on_terminal_) scene::console().show(progress_line(record, total_));

@@ -20,7 +20,7 @@ std::string progress_line(const driver::TickRecord& record, double total);
 class HeatWarning {
  public:
   /// Returns the warning at the first tick above the limit; empty otherwise.
-  std::string look(const driver::TickRecord& record);
+  std::string check(const driver::TickRecord& record);
 
  private:
   bool given_ = false;
@@ -37,7 +37,7 @@ class THIMBLE_EXPORT RunAttendance {
  public:
   /// Constructs the tasks of a session. `watch` and `desk` may be null, and must outlive it.
   /// `on_terminal`: standard error is a terminal.
-  RunAttendance(Session& session, ReplugWatches* watch, ViewerRequestHandler* desk,
+  RunAttendance(Session& session, ReplugWatches* watch, ViewerRequestHandler* handler,
                 bool on_terminal);
 
   /// Runs all tasks once; call it about ten times a second.
@@ -46,11 +46,11 @@ class THIMBLE_EXPORT RunAttendance {
   void clear() const;
 
  private:
-  void warn_of_carried();
+  void warn_of_compensation();
 
   Session& session_;
   ReplugWatches* watch_;
-  ViewerRequestHandler* desk_;
+  ViewerRequestHandler* handler_;
   bool on_terminal_;
   double total_;  // Duration, s; 0: unknown.
   // Number of withdrawals of each arm's gravity compensation reported so far.

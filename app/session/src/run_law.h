@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "carry/carried_force.h"
+#include "gravity/gravity_compensation.h"
 #include "law_change.h"
-#include "share/held_knobs.h"
 #include "share/live_control.h"
+#include "share/program_knobs.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/fault.h"
@@ -30,7 +30,7 @@ class SceneLaw {
     leads_ = leads;
   }
   /// Adds the knobs of the calling program; without effect if viewers are set. Real-time: safe.
-  void set_program_knobs(HeldKnobs& knobs) noexcept { program_ = &knobs; }
+  void set_program_knobs(ProgramKnobs& knobs) noexcept { program_ = &knobs; }
 
   /// Returns the law of the stages that are set; without any, that of the objects. Real-time: safe.
   driver::ForceLaw law() noexcept {
@@ -74,7 +74,7 @@ class SceneLaw {
   render::SceneTouch& objects_;
   LiveControl* viewers_ = nullptr;
   bool leads_ = false;
-  HeldKnobs* program_ = nullptr;
+  ProgramKnobs* program_ = nullptr;
 };
 
 /// Force law of one arm of a run, from the state of the arm to the force requested from its gate. A
@@ -84,7 +84,7 @@ class SceneLaw {
 ///   2. knobs     settings of objects move                 viewers (LiveControl) or program
 ///   3. objects   sum of surfaces, bodies and fields       every run (render::SceneTouch)
 ///   4. pause     the force fades out and in               viewers, in real time
-///   5. weight    gravity compensation is added            arm file (CarriedForce)
+///   5. weight    gravity compensation is added            arm file (GravityCompensation)
 ///
 /// A law of the caller (Session::set_servo_law) replaces stages 2 to 4 and may call them. Stages
 /// are set before the first tick. A run with only stage 3 calls the objects directly.
@@ -120,7 +120,7 @@ class RunLaw {
   /// safe.
   const LawChange* change() const noexcept;
   /// Returns how often the force of stage 5 was switched off because the tip moved along it
-  /// (CarriedTrust). Any thread.
+  /// (CompensationTrust). Any thread.
   std::uint64_t carry_withdrawn() const noexcept { return carried_.withdrawn(); }
 
  private:
@@ -136,7 +136,7 @@ class RunLaw {
   // Only the objects of stages 2 to 4 are used; valid once the law was requested.
   bool objects_only_ = false;
   bool carries_ = false;
-  CarriedForce carried_;
+  GravityCompensation carried_;
 };
 
 }  // namespace thimble::session

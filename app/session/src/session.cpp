@@ -4,12 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "bent_mesh.h"
+#include "apply_patch.h"
 #include "events/event_log.h"
 #include "figures/figures_of.h"
 #include "log/logger.h"
 #include "more_arms.h"
-#include "observers/page_server.h"
+#include "observers/virtual_time_pager.h"
 #include "output/output_file.h"
 #include "print.h"
 #include "recording/recording_layout.h"
@@ -18,8 +18,8 @@
 #include "run_loop.h"
 #include "run_records.h"
 #include "setup.h"
-#include "share/held_knobs.h"
 #include "share/live_control.h"
+#include "share/program_knobs.h"
 #include "share/run_sharing.h"
 #include "share/share_run.h"
 
@@ -52,11 +52,11 @@ struct Session::Parts {
 
   std::unique_ptr<Setup> setup;
   RunRecords records;
-  std::unique_ptr<PageServer> pages;  // set in virtual time if an object is paged from disk
+  std::unique_ptr<VirtualTimePager> pages;  // set in virtual time if an object is paged from disk
   std::unique_ptr<SharedRun> shared;
   std::unique_ptr<RunSharing> sharing;   // set if the run is shared; also `control`
   std::unique_ptr<LiveControl> control;  // requests of viewers
-  std::unique_ptr<HeldKnobs> knobs;      // changed by the caller
+  std::unique_ptr<ProgramKnobs> knobs;   // changed by the caller
   bool log = false;                      // true to log the events of the run
   std::unique_ptr<EventLog> event_log;   // created once the arm is open, if `log`
   RunLaw law;                            // law of the first arm
@@ -79,13 +79,13 @@ void Session::Parts::add_records() {
   if (records.poses) loop.add(*records.poses);
   loop.add(records.recording);
   if (!setup->real_time() && setup->objects().paging()) {
-    pages = std::make_unique<PageServer>(setup->objects());
+    pages = std::make_unique<VirtualTimePager>(setup->objects());
     loop.add(*pages);
   }
 }
 
 void Session::Parts::add_knobs() {
-  knobs = std::make_unique<HeldKnobs>(setup->scene(), setup->objects().touch());
+  knobs = std::make_unique<ProgramKnobs>(setup->scene(), setup->objects().touch());
   law.scene().set_program_knobs(*knobs);
   loop.add(*knobs);
 }
@@ -126,12 +126,12 @@ void Session::Parts::begin(const std::atomic<bool>& stop) noexcept {
     control->join(*shared, setup->hand_by_mouse(), stop, setup->pace());
     shared->set_state(RunState::kRunning);
   }
-  const bool go_on_with_the_others =
+  const bool continue_with_others =
       setup->arms() > 1 && setup->scene().faults == scene::FaultRule::kApart;
   const driver::ServoSettings settings{
       .period_ns = setup->period_ns(),
       .ticks = setup->ticks(),
-      .outlive_faults = setup->any_real() || setup->endless() || go_on_with_the_others,
+      .continue_after_faults = setup->any_real() || setup->endless() || continue_with_others,
       .prepare_ns = setup->real_time() ? driver::ServoSettings::kPrepare_ns : 0};
   if (setup->arms() > 1) law.stop_in_fault(setup->device());
   loop.begin(setup->device(), setup->clock(), law.law(), settings);
@@ -307,8 +307,8 @@ const scene::ArmSimulation* Session::simulation(std::size_t arm) const noexcept 
 bool Session::real_time() const noexcept {
   return parts_->setup->real_time();
 }
-const std::vector<std::string>& Session::told() const noexcept {
-  return parts_->setup->told();
+const std::vector<std::string>& Session::warnings() const noexcept {
+  return parts_->setup->warnings();
 }
 
 const driver::Snapshot<driver::TickRecord>& Session::newest(std::size_t arm) const noexcept {
@@ -356,15 +356,16 @@ std::optional<render::TriangleMesh> Session::deepest_dent() const {
   if (dents == nullptr || dents->deepest().triangle_count == 0) return {};
   const render::BodyPatch& patch = dents->deepest();
   const scene::SceneObjects& objects = parts_->setup->objects();
-  return bent(objects.mesh_W(), objects.place(static_cast<std::size_t>(patch.object)), patch);
+  return apply_patch(objects.mesh_W(), objects.place(static_cast<std::size_t>(patch.object)),
+                     patch);
 }
 
 driver::Result<void> Session::begin_recording(const std::filesystem::path& path, bool overwrite) {
   constexpr double kLongest = 86400;  // s, for a run of unknown duration; chosen
   const Setup& setup = *parts_->setup;
-  const auto ticks_most =
-      setup.ticks() > 0 ? setup.ticks()
-                        : static_cast<std::uint64_t>(std::ceil(kLongest * setup.scene().rate));
+  const auto max_ticks = setup.ticks() > 0
+                             ? setup.ticks()
+                             : static_cast<std::uint64_t>(std::ceil(kLongest * setup.scene().rate));
   // Checks all files before the first recording starts. A single file is checked when it is opened.
   for (std::size_t arm = 0; arms() > 1 && arm < arms(); ++arm) {
     const auto file = file_of_arm(path, arm_name(arm));
@@ -378,7 +379,7 @@ driver::Result<void> Session::begin_recording(const std::filesystem::path& path,
   }
   for (std::size_t arm = 0; arm < arms(); ++arm) {
     auto begun = parts_->records_of(arm).recording.begin(file_of_arm(path, arm_name(arm)),
-                                                         setup.recording_info(arm), ticks_most,
+                                                         setup.recording_info(arm), max_ticks,
                                                          setup.real_time(), overwrite);
     if (!begun) return begun;
   }
@@ -387,15 +388,15 @@ driver::Result<void> Session::begin_recording(const std::filesystem::path& path,
 
 driver::Result<std::optional<std::filesystem::path>> Session::end_recording() {
   std::optional<std::filesystem::path> first;
-  std::optional<driver::Error> trouble;
+  std::optional<driver::Error> first_error;
   for (std::size_t arm = 0; arm < arms(); ++arm) {
     RecordingSwitch& recording = parts_->records_of(arm).recording;
     const Recorder* recorder = recording.recorder();
     if (recorder != nullptr && !first) first = recorder->path();
     auto stopped = recording.stop();
-    if (!stopped && !trouble) trouble = stopped.error();
+    if (!stopped && !first_error) first_error = stopped.error();
   }
-  if (trouble) return *trouble;
+  if (first_error) return *first_error;
   return first;
 }
 

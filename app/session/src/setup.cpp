@@ -33,7 +33,7 @@ bool any_real_in(const SessionOptions& options) {
 driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::path& scene,
                                                       const SessionOptions& options) {
   if (options.real_arm && !options.terms) {
-    return driver::Error{"A real arm requires `terms` (scene::terms_for)."};
+    return driver::Error{"A real arm requires `terms` (scene::find_arm_policy)."};
   }
   auto found = scene::find_scene(scene.string());
   if (!found) return found.error();
@@ -50,9 +50,9 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
   setup->plan_.real_time = options.clock == ClockKind::kWall || any_real_in(options);
   setup->plan_.paced =
       options.clock == ClockKind::kPaced && !setup->plan_.real_time && !options.own_clock;
-  const auto stood_in = [](const auto& use) { return use.second && use.second->open_link; };
+  const auto has_test_link = [](const auto& use) { return use.second && use.second->open_link; };
   if (!setup->plan_.real_time || options.open_link ||
-      std::any_of(options.real_arms.begin(), options.real_arms.end(), stood_in)) {
+      std::any_of(options.real_arms.begin(), options.real_arms.end(), has_test_link)) {
     setup->clock_ = options.own_clock;
     setup->plan_.own_clock = options.own_clock != nullptr;
   }
@@ -60,10 +60,10 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
 
   if (auto built = setup->build_objects(); !built) return built.error();
   const std::vector<std::string>& notes = setup->objects_->notes();
-  setup->plan_.told.insert(setup->plan_.told.end(), notes.begin(), notes.end());
-  if (setup->objects_->moving().size() > ScenePoses::kMost) {
+  setup->plan_.warnings.insert(setup->plan_.warnings.end(), notes.begin(), notes.end());
+  if (setup->objects_->moving().size() > ScenePoses::kMax) {
     return driver::Error{fmt::format("{}: at most {} objects may move.",
-                                     setup->plan_.scene_file.string(), ScenePoses::kMost)};
+                                     setup->plan_.scene_file.string(), ScenePoses::kMax)};
   }
   if (auto simulated = setup->simulate_arms(); !simulated) return simulated.error();
   if (!options.meshes)
@@ -172,9 +172,9 @@ driver::Result<void> Setup::use_real_arms(const SessionOptions& options) {
     arm.real = options.real_arm;
     arm.open_link = options.open_link;
     arm.start_pose = StartPose::of(plan_.scene->arms.front().arm, arm.real->kind);
-    auto told = scene::put_on_terms(*plan_.scene, plan_.scene_file, *options.terms);
-    if (!told) return told.error();
-    plan_.told = std::move(told).value();
+    auto warnings = scene::apply_arm_policy(*plan_.scene, plan_.scene_file, *options.terms);
+    if (!warnings) return warnings.error();
+    plan_.warnings = std::move(warnings).value();
     arm.energy = plan_.scene->energy;
     arm.feel_check = options.terms->feel_check;
     return {};
@@ -184,14 +184,14 @@ driver::Result<void> Setup::use_real_arms(const SessionOptions& options) {
     const auto use = options.real_arms.find(arm_name(i));
     if (use == options.real_arms.end() || !use->second) {
       arms_[i].start_pose.emplace(arm_file(i).workspace, std::nullopt);
-    } else if (auto used = use_among_others(i, *use->second); !used) {
+    } else if (auto used = use_real_arm(i, *use->second); !used) {
       return used;
     }
   }
   return {};
 }
 
-driver::Result<void> Setup::use_among_others(std::size_t i, const RealArmUse& use) {
+driver::Result<void> Setup::use_real_arm(std::size_t i, const RealArmUse& use) {
   scene::SceneArm& in_scene = plan_.scene->arms[i];
   const auto of_arm = [&](const std::string& what) {
     return "The arm \"" + arm_name(i) + "\": " + what;
@@ -209,9 +209,9 @@ driver::Result<void> Setup::use_among_others(std::size_t i, const RealArmUse& us
   alone.arms.front().own_arm_file = in_scene.arm_file;
   alone.energy = plan_.scene->energy;
   alone.energy_line = plan_.scene->energy_line;
-  auto told = scene::put_on_terms(alone, plan_.scene_file, use.terms);
-  if (!told) return driver::Error{of_arm(told.error().message)};
-  for (const std::string& sentence : *told) plan_.told.push_back(of_arm(sentence));
+  auto warnings = scene::apply_arm_policy(alone, plan_.scene_file, use.terms);
+  if (!warnings) return driver::Error{of_arm(warnings.error().message)};
+  for (const std::string& sentence : *warnings) plan_.warnings.push_back(of_arm(sentence));
   in_scene.arm = in_scene.place.put(alone.arms.front().arm);
   in_scene.arm_file = alone.arms.front().arm_file;
   arm.energy.reset();  // now in the arm's own settings
@@ -255,7 +255,7 @@ driver::Result<void> Setup::simulate_arms() {
     if (!simulation) return simulation.error();
     arms_[i].simulation = std::move(simulation).value();
     if (auto inside = find_start_inside(i, start); !inside.empty()) {
-      plan_.told.push_back(std::move(inside));
+      plan_.warnings.push_back(std::move(inside));
     }
   }
   return {};
@@ -303,7 +303,7 @@ driver::Result<void> Setup::open(std::size_t i) {
   // A hand moved by a viewer or a program has no tremor, so unchanged counts are no sign of old
   // reports.
   constexpr double kAnyTime = 1e9;  // s
-  if (hand_led()) settings.motion.hold_most = kAnyTime;
+  if (hand_led()) settings.motion.max_hold = kAnyTime;
   settings.hold = plan_.hold;
   driver::HeatSettings& heat = settings.heat;
   if (arm.real && heat.named()) {
@@ -365,13 +365,13 @@ driver::Result<void> Setup::activate() {
 driver::Result<void> Setup::check_start_pose() const {
   for (std::size_t i = 0; i < arms(); ++i) {
     if (!arms_[i].real) continue;
-    const std::string trouble =
-        start_pose(i).trouble(device(i).state().p_WT, !plan_.homed || device(i).home_needed());
-    if (trouble.empty()) {
+    const std::string problem =
+        start_pose(i).problem(device(i).state().p_WT, !plan_.homed || device(i).home_needed());
+    if (problem.empty()) {
       device(i).confirm_home();
       continue;
     }
-    return driver::Error{arms() == 1 ? trouble : "The arm \"" + arm_name(i) + "\": " + trouble};
+    return driver::Error{arms() == 1 ? problem : "The arm \"" + arm_name(i) + "\": " + problem};
   }
   return {};
 }
@@ -379,11 +379,11 @@ driver::Result<void> Setup::check_start_pose() const {
 Terminal terminal_of(const Setup& setup, std::size_t arm, Terminal terminal) {
   if (setup.arms() == 1) return terminal;
   const std::string name = setup.arm_name(arm) + ": ";
-  for (auto* says : {&terminal.tell, &terminal.ask}) {
-    if (!*says) continue;
-    *says = [name, whole = *says](const std::string& line) {
-      const bool begins_anew = !line.empty() && line.front() == '\n';
-      whole(begins_anew ? "\n" + name + line.substr(1) : name + line);
+  for (auto* output : {&terminal.print_line, &terminal.ask}) {
+    if (!*output) continue;
+    *output = [name, whole = *output](const std::string& line) {
+      const bool starts_new_line = !line.empty() && line.front() == '\n';
+      whole(starts_new_line ? "\n" + name + line.substr(1) : name + line);
     };
   }
   return terminal;

@@ -18,8 +18,8 @@
 #include "thimble/driver/device.h"
 #include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
+#include "thimble/scene/arm_policy.h"
 #include "thimble/scene/arm_simulation.h"
-#include "thimble/scene/real_arm_terms.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/scene_objects.h"
 #include "thimble/scene/shared_meshes.h"
@@ -34,7 +34,7 @@ struct RunPlan {
   std::filesystem::path scene_file;
   /// Scene, shared by similar sessions; changed only while it is read.
   std::shared_ptr<scene::Scene> scene;
-  std::vector<std::string> told;  ///< Warnings to show the user, one sentence each.
+  std::vector<std::string> warnings;  ///< Warnings to show the user, one sentence each.
   std::vector<std::string> quality_choices;
   RunChoices choices;
   std::filesystem::path firmware;
@@ -155,7 +155,7 @@ class THIMBLE_EXPORT Setup {
   std::uint64_t seed() const noexcept { return plan_.seed; }
   /// Returns warnings to show the user: mesh repairs, omissions and assumptions. For a real arm
   /// also how the limits named in the scene were applied.
-  const std::vector<std::string>& told() const noexcept { return plan_.told; }
+  const std::vector<std::string>& warnings() const noexcept { return plan_.warnings; }
   /// Returns the names of the objects in which the tip of an arm starts; for a real arm once it is
   /// activated.
   const std::vector<std::string>& inside_at_start(std::size_t arm = 0) const noexcept {
@@ -181,7 +181,7 @@ class THIMBLE_EXPORT Setup {
   driver::Result<void> read(const SessionOptions& options);
   driver::Result<void> check_several(const SessionOptions& options) const;
   driver::Result<void> use_real_arms(const SessionOptions& options);
-  driver::Result<void> use_among_others(std::size_t arm, const RealArmUse& use);
+  driver::Result<void> use_real_arm(std::size_t arm, const RealArmUse& use);
   driver::Result<void> build_objects();
   driver::Result<void> simulate_arms();
   std::string find_start_inside(std::size_t arm, const Eigen::Vector3d& p_WT);

@@ -7,8 +7,8 @@
 namespace thimble::session {
 
 double paced_due(double due_ns, double world_ns, double virtual_ns, double speed) noexcept {
-  const double late_most = world_ns - static_cast<double>(SpeedClock::kCatchUpMost_ns);
-  return std::max(due_ns + virtual_ns / speed, late_most);
+  const double earliest_due_ns = world_ns - static_cast<double>(SpeedClock::kCatchUpMax_ns);
+  return std::max(due_ns + virtual_ns / speed, earliest_due_ns);
 }
 
 void SpeedClock::sleep_until_ns(std::int64_t time_ns) noexcept {

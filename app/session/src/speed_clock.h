@@ -14,7 +14,7 @@ class SpeedClock final : public driver::Clock {
  public:
   /// Largest delay that a late run catches up with; the rest is ignored, ns. [chosen: an
   /// imperceptible pause of the machine]
-  static constexpr std::int64_t kCatchUpMost_ns = 50'000'000;
+  static constexpr std::int64_t kCatchUpMax_ns = 50'000'000;
 
   std::int64_t now_ns() const noexcept override { return now_ns_; }
   void sleep_until_ns(std::int64_t time_ns) noexcept override;
@@ -29,7 +29,7 @@ class SpeedClock final : public driver::Clock {
 };
 
 /// Returns the real time at which a virtual time, `virtual_ns` after `due_ns`, is due at `speed`.
-/// If `due_ns` is more than kCatchUpMost_ns in the past, it counts as kCatchUpMost_ns ago. All of
+/// If `due_ns` is more than kCatchUpMax_ns in the past, it counts as kCatchUpMax_ns ago. All of
 /// CLOCK_MONOTONIC. Real-time: safe.
 double paced_due(double due_ns, double world_ns, double virtual_ns, double speed) noexcept;
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;              // period at which arms expect messages
 constexpr std::int64_t kSleptThrough_ns = 10 * kPeriod_ns;  // as in a servo loop
-constexpr int kTicksBetweenLooks = 20;  // between two checks of the terminal; chosen
+constexpr int kTicksBetweenChecks = 20;  // between two checks of the terminal; chosen
 
 }  // namespace
 
@@ -23,10 +23,10 @@ StartPose StartPose::of(const scene::ArmFile& file, driver::ArmKind kind) {
   return {file.workspace, file.p_WB + file.R_WB * arm->pose({}).p_BT};
 }
 
-std::string StartPose::trouble(const Eigen::Vector3d& p_WT, bool at_home) const {
-  constexpr const char* kMend = "switch it off, move it to its home pose, and switch it on there";
+std::string StartPose::problem(const Eigen::Vector3d& p_WT, bool at_home) const {
+  constexpr const char* kRemedy = "switch it off, move it to its home pose, and switch it on there";
   if (!p_WT.allFinite()) {
-    return fmt::format("The arm reports an invalid position: {}.", kMend);
+    return fmt::format("The arm reports an invalid position: {}.", kRemedy);
   }
   if (p_WHome_) {
     const double distance = (p_WT - *p_WHome_).norm();
@@ -35,7 +35,7 @@ std::string StartPose::trouble(const Eigen::Vector3d& p_WT, bool at_home) const 
       return fmt::format(
           "The arm reports its tip {:.0f} mm away from its home pose. Move it to its home pose. If "
           "it is already there, its counters are wrong: {}.",
-          1e3 * distance, kMend);
+          1e3 * distance, kRemedy);
     }
   }
   const Eigen::Vector3d nearest = p_WT.cwiseMax(workspace_.min_W).cwiseMin(workspace_.max_W);
@@ -44,7 +44,7 @@ std::string StartPose::trouble(const Eigen::Vector3d& p_WT, bool at_home) const 
     return fmt::format(
         "The arm reports its tip {:.0f} mm outside of the workspace in its arm file. Move it "
         "inside. If it is already inside, its counters are wrong: {}.",
-        1e3 * outside, has_home() ? kMend : "restart the program, which homes it again");
+        1e3 * outside, has_home() ? kRemedy : "restart the program, which homes it again");
   }
   return {};
 }
@@ -53,15 +53,15 @@ driver::Result<bool> wait_for_start_pose(driver::Device& device, driver::Clock& 
                                          const StartPose& place, bool at_home,
                                          const Terminal& terminal, const std::atomic<bool>& stop) {
   // The board may restart while the program waits.
-  const auto trouble_now = [&] {
-    std::string found = place.trouble(device.state().p_WT, at_home || device.home_needed());
+  const auto problem_now = [&] {
+    std::string found = place.problem(device.state().p_WT, at_home || device.home_needed());
     if (found.empty()) device.confirm_home();
     return found;
   };
-  std::string trouble = trouble_now();
-  if (trouble.empty()) return true;
-  if (!terminal.there) return driver::Error{trouble + " Then restart the program."};
-  const auto ask = [&] { terminal.tell(trouble + " Hold it there and press Enter."); };
+  std::string problem = problem_now();
+  if (problem.empty()) return true;
+  if (!terminal.there) return driver::Error{problem + " Then restart the program."};
+  const auto ask = [&] { terminal.print_line(problem + " Hold it there and press Enter."); };
   ask();
   const std::int64_t asleep_ns = clock.asleep_ns();
   std::int64_t due_ns = clock.now_ns();
@@ -76,12 +76,12 @@ driver::Result<bool> wait_for_start_pose(driver::Device& device, driver::Clock& 
     if (device.fault() != driver::Fault::kNone) {
       return driver::Error{std::string(driver::describe(device.fault()))};
     }
-    if (tick % kTicksBetweenLooks != 0) continue;
+    if (tick % kTicksBetweenChecks != 0) continue;
     const EnterKey key = terminal.key();
-    if (key == EnterKey::kClosed) return driver::Error{trouble + " The terminal was closed."};
+    if (key == EnterKey::kClosed) return driver::Error{problem + " The terminal was closed."};
     if (key != EnterKey::kPressed) continue;
-    trouble = trouble_now();
-    if (trouble.empty()) return true;
+    problem = problem_now();
+    if (problem.empty()) return true;
     ask();
   }
   return false;

@@ -47,7 +47,7 @@ class StartPose {
   /// Returns a sentence with the error of the tip position p_WT (m), its distance and the fix;
   /// empty if forces are allowed. `at_home`: the tip must be at the home pose, if there is one. A
   /// position that is not finite is an error. Real-time: no.
-  std::string trouble(const Eigen::Vector3d& p_WT, bool at_home) const;
+  std::string problem(const Eigen::Vector3d& p_WT, bool at_home) const;
 
  private:
   scene::WorkspaceBox workspace_;

@@ -8,8 +8,8 @@ namespace thimble::session {
 
 Terminal user_terminal() {
   return {.there = isatty(STDIN_FILENO) != 0,
-          .key = look_for_enter,
-          .tell = [](const std::string& line) { scene::terminal().info("{}", line); },
+          .key = check_enter_key,
+          .print_line = [](const std::string& line) { scene::terminal().info("{}", line); },
           .ask = [](const std::string& question) { scene::terminal().info("{}", question); }};
 }
 

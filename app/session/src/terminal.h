@@ -13,7 +13,7 @@ struct Terminal {
   bool there = false;  ///< True if a user can be asked.
   /// Returns the action of the user, without waiting.
   std::function<EnterKey()> key;
-  std::function<void(const std::string&)> tell;  ///< Prints a line.
+  std::function<void(const std::string&)> print_line;  ///< Prints a line.
   /// Prints a question; the line stays open for the answer.
   std::function<void(const std::string&)> ask = {};
 };

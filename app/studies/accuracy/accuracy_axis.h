@@ -24,7 +24,7 @@ struct AccuracyPoint {
   std::function<Stroke()> prepare;
   /// Prepares the additional work of a stroke that is no cost of the point; its cost is subtracted.
   /// Empty if there is none.
-  std::function<Stroke()> beside = {};
+  std::function<Stroke()> baseline = {};
   double ticks = 1;                ///< Divisor of a stroke's cost: ticks, or ms of touch.
   bool is_default = false;         ///< On an axis with `given`: the value of a PHANTOM-like arm.
   bool fits = false;               ///< Whether it is used for the slope of the line.

@@ -26,7 +26,7 @@ class CopiedFollower : public Follower {
   std::unique_ptr<Follower> copy() const override {
     return std::make_unique<Self>(static_cast<const Self&>(*this));
   }
-  void stand_where(const Follower& other) noexcept override {
+  void copy_state(const Follower& other) noexcept override {
     static_cast<Self&>(*this) = static_cast<const Self&>(other);
   }
 };
@@ -107,15 +107,15 @@ class HoppingFollower final : public CopiedFollower<HoppingFollower> {
     for (int hops = 0; hops < render::kHopsMax; ++hops) {
       const render::TriangleCell& cell = mesh_->cell(active_);
       std::size_t worst = 0;
-      double least = 0;
+      double min = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         const double distance = mesh_->edge_planes(active_)[k].distance(p);
-        if (distance < least) {
-          least = distance;
+        if (distance < min) {
+          min = distance;
           worst = k;
         }
       }
-      if (!(least < 0)) return;
+      if (!(min < 0)) return;
       active_ = cell.neighbours[worst];
       effort_ += 1;
     }
@@ -169,7 +169,7 @@ std::unique_ptr<Follower> make_tracked(const FollowedSurface& surface, TrackerCh
       const auto normals = std::make_shared<const render::SmoothNormals>(
           *surface.mesh, render::kCreaseAngle, render::NormalWeights::kFitted);
       return followed_by(Contact(surface.mesh, surface.tree, normals));
-    } else if constexpr (std::is_same_v<Contact, render::MemoryContact>) {
+    } else if constexpr (std::is_same_v<Contact, render::InMemoryContact>) {
       return followed_by(Contact(render::PackedSurface::build(*surface.mesh).value(),
                                  render::SearchChoice::kTree));
     } else {

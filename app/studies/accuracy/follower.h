@@ -45,7 +45,7 @@ class Follower {
   virtual std::unique_ptr<Follower> copy() const = 0;
 
   /// Copies the state of `other`, which was made by the same choice. Real-time: safe.
-  virtual void stand_where(const Follower& other) noexcept = 0;
+  virtual void copy_state(const Follower& other) noexcept = 0;
 };
 
 /// Makes a follower. Precondition: the surface supports the method (otherwise Result::value

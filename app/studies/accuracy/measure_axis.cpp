@@ -39,7 +39,7 @@ void measure_times(std::vector<MeasuredPoint*>& points, int rounds, const Course
   struct Timed {
     MeasuredPoint* point = nullptr;
     Stroke stroke;
-    Stroke beside = {};
+    Stroke baseline = {};
     std::vector<double> ns = {};
   };
   std::vector<Timed> all;
@@ -47,9 +47,9 @@ void measure_times(std::vector<MeasuredPoint*>& points, int rounds, const Course
   for (MeasuredPoint* point : points) {
     if (course.stopped()) return;
     all.push_back({point, point->point->prepare()});
-    if (point->point->beside) all.back().beside = point->point->beside();
+    if (point->point->baseline) all.back().baseline = point->point->baseline();
     seen = seen + all.back().stroke();  // the first one fills the caches
-    if (all.back().beside) seen = seen + all.back().beside();
+    if (all.back().baseline) seen = seen + all.back().baseline();
   }
   for (int round = 0; round < rounds; ++round) {
     course.advance(1);
@@ -58,10 +58,10 @@ void measure_times(std::vector<MeasuredPoint*>& points, int rounds, const Course
       const double begin = worked();
       seen = seen + timed.stroke();
       double spent = worked() - begin;
-      if (timed.beside) {
-        const double begin_beside = worked();
-        seen = seen + timed.beside();
-        spent -= worked() - begin_beside;
+      if (timed.baseline) {
+        const double begin_baseline = worked();
+        seen = seen + timed.baseline();
+        spent -= worked() - begin_baseline;
       }
       timed.ns.push_back(1e9 * spent / timed.point->point->ticks);
     }
@@ -137,7 +137,7 @@ std::optional<double> slope_of(const std::vector<MeasuredPoint>& points) {
     sxx += x * x;
     sxy += x * y;
   }
-  if (n < kSlopePointsLeast) return std::nullopt;
+  if (n < kSlopePointsMin) return std::nullopt;
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
@@ -174,13 +174,13 @@ void set_error(MeasuredPoint& point, double error) {
 
 void count_instructions(const std::string& axis, const std::vector<MeasuredPoint*>& points) {
   std::size_t strokes = 0;
-  for (const MeasuredPoint* point : points) strokes += point->point->beside ? 2 : 1;
+  for (const MeasuredPoint* point : points) strokes += point->point->baseline ? 2 : 1;
   const auto counts = count_strokes(axis);
   if (!counts || counts->size() != strokes) return;
   std::size_t next = 0;
   for (MeasuredPoint* point : points) {
     double count = (*counts)[next++];
-    if (point->point->beside) count -= (*counts)[next++];
+    if (point->point->baseline) count -= (*counts)[next++];
     point->instructions = count / point->point->ticks;
   }
 }

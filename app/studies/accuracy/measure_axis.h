@@ -74,10 +74,10 @@ MeasuredAxis with_numbers(AccuracyAxis axis, std::span<const double> numbers);
 MeasuredAxis measure_axis(AccuracyAxis axis, const MeasureOptions& options);
 
 /// The minimum number of points for a slope: two points fit any law.
-inline constexpr int kSlopePointsLeast = 4;
+inline constexpr int kSlopePointsMin = 4;
 
 /// Returns the slope of log error over log knob through the points with `fits`; empty if fewer than
-/// `kSlopePointsLeast` of them have an error. Real-time: never from the servo thread.
+/// `kSlopePointsMin` of them have an error. Real-time: never from the servo thread.
 std::optional<double> slope_of(const std::vector<MeasuredPoint>& points);
 
 }  // namespace thimble::studies

@@ -66,8 +66,8 @@ int probe_strokes(const std::string& prefix) {
         if (!begins_with(name, prefix)) continue;
         seen = seen + thimble_probed_stroke(point.prepare());
         ++count;
-        if (!point.beside) continue;
-        seen = seen + thimble_probed_stroke(point.beside());
+        if (!point.baseline) continue;
+        seen = seen + thimble_probed_stroke(point.baseline());
         ++count;
       }
     }

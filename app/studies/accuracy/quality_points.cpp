@@ -27,7 +27,7 @@ constexpr double kForceShareFelt = 0.035;
 constexpr double kAngleFelt = 5 * std::numbers::pi / 180;
 
 constexpr std::array kFinenesses{24, 32, 48, 64};  // edges around the tube
-constexpr int kMostSubsteps = 8;
+constexpr int kSubstepsMax = 8;
 
 struct TouchedBy {
   const char* name;
@@ -111,7 +111,7 @@ std::string step_rows() {
   });
   for (AccuracyLine& line : steps.lines) {
     std::erase_if(line.points,
-                  [](const AccuracyPoint& point) { return std::stoi(point.name) > kMostSubsteps; });
+                  [](const AccuracyPoint& point) { return std::stoi(point.name) > kSubstepsMax; });
   }
   const MeasuredAxis axis = measure_axis(std::move(steps), {.count = false});
   const double unit = named(axis, "implicit").points.front().ns;

@@ -8,7 +8,7 @@
 namespace thimble::studies {
 namespace {
 
-constexpr int kMost = 64;
+constexpr int kMax = 64;
 
 class ProductEstimate final : public VelocityEstimate {
  public:
@@ -24,24 +24,24 @@ class ProductEstimate final : public VelocityEstimate {
 class Past {
  public:
   void take(double x) noexcept {
-    last_ = (last_ + 1) % (kMost + 1);
+    last_ = (last_ + 1) % (kMax + 1);
     places_[static_cast<std::size_t>(last_)] = x;
-    if (size_ < kMost + 1) ++size_;
+    if (size_ < kMax + 1) ++size_;
   }
   int ticks() const noexcept { return size_ - 1; }
   double ago(int ticks) const noexcept {
-    return places_[static_cast<std::size_t>((last_ + kMost + 1 - ticks) % (kMost + 1))];
+    return places_[static_cast<std::size_t>((last_ + kMax + 1 - ticks) % (kMax + 1))];
   }
 
  private:
-  std::array<double, kMost + 1> places_{};
+  std::array<double, kMax + 1> places_{};
   int last_ = 0;
   int size_ = 0;
 };
 
 class WindowEstimate final : public VelocityEstimate {
  public:
-  WindowEstimate(int ticks, double period) : ticks_(std::clamp(ticks, 1, kMost)), period_(period) {}
+  WindowEstimate(int ticks, double period) : ticks_(std::clamp(ticks, 1, kMax)), period_(period) {}
   double update(double x) noexcept override {
     past_.take(x);
     const int n = std::min(ticks_, past_.ticks());
@@ -56,11 +56,11 @@ class WindowEstimate final : public VelocityEstimate {
 
 class AdaptiveEstimate final : public VelocityEstimate {
  public:
-  AdaptiveEstimate(int most, double step, double period)
-      : most_(std::clamp(most, 1, kMost)), within_(step / 2 * (1 + 1e-9)), period_(period) {}
+  AdaptiveEstimate(int max, double step, double period)
+      : max_(std::clamp(max, 1, kMax)), within_(step / 2 * (1 + 1e-9)), period_(period) {}
   double update(double x) noexcept override {
     past_.take(x);
-    const int longest = std::min(most_, past_.ticks());
+    const int longest = std::min(max_, past_.ticks());
     double slope = 0;
     for (int n = 1; n <= longest; ++n) {
       const double tried = (x - past_.ago(n)) / n;  // m per tick
@@ -75,27 +75,27 @@ class AdaptiveEstimate final : public VelocityEstimate {
 
  private:
   Past past_;
-  int most_;
+  int max_;
   double within_;
   double period_;
 };
 
 class LevantEstimate final : public VelocityEstimate {
  public:
-  LevantEstimate(double most, double period) : most_(most), period_(period) {}
+  LevantEstimate(double max, double period) : max_(max), period_(period) {}
   double update(double x) noexcept override {
     if (!begun_) place_ = x;
     begun_ = true;
     const double off = place_ - x;
     const double sign = off > 0 ? 1 : off < 0 ? -1 : 0;
-    const double speed = speed_ - 1.5 * std::sqrt(most_ * std::abs(off)) * sign;
-    speed_ -= 1.1 * most_ * sign * period_;
+    const double speed = speed_ - 1.5 * std::sqrt(max_ * std::abs(off)) * sign;
+    speed_ -= 1.1 * max_ * sign * period_;
     place_ += period_ * speed;
     return speed_;
   }
 
  private:
-  double most_, period_;
+  double max_, period_;
   double place_ = 0, speed_ = 0;
   bool begun_ = false;
 };
@@ -108,11 +108,11 @@ std::unique_ptr<VelocityEstimate> product_estimate(double corner, double period)
 std::unique_ptr<VelocityEstimate> window_estimate(int ticks, double period) {
   return std::make_unique<WindowEstimate>(ticks, period);
 }
-std::unique_ptr<VelocityEstimate> adaptive_estimate(int most, double step, double period) {
-  return std::make_unique<AdaptiveEstimate>(most, step, period);
+std::unique_ptr<VelocityEstimate> adaptive_estimate(int max, double step, double period) {
+  return std::make_unique<AdaptiveEstimate>(max, step, period);
 }
-std::unique_ptr<VelocityEstimate> levant_estimate(double most, double period) {
-  return std::make_unique<LevantEstimate>(most, period);
+std::unique_ptr<VelocityEstimate> levant_estimate(double max, double period) {
+  return std::make_unique<LevantEstimate>(max, period);
 }
 
 }  // namespace thimble::studies

@@ -22,9 +22,9 @@ std::unique_ptr<VelocityEstimate> window_estimate(int ticks, double period);
 /// Makes the adaptive window: the longest one, up to `most` (1 to 64) ticks, in which a straight
 /// line through its ends is within half an encoder step of every sample
 /// [S Janabi-Sharifi, Hayward, Chen 2000: first-order adaptive windowing].
-std::unique_ptr<VelocityEstimate> adaptive_estimate(int most, double step, double period);
+std::unique_ptr<VelocityEstimate> adaptive_estimate(int max, double step, double period);
 /// Makes Levant's differentiator of first order for accelerations up to `most` m/s^2
 /// [M Levant 1998: gains 1.1 and 1.5 root].
-std::unique_ptr<VelocityEstimate> levant_estimate(double most, double period);
+std::unique_ptr<VelocityEstimate> levant_estimate(double max, double period);
 
 }  // namespace thimble::studies

@@ -128,10 +128,10 @@ struct Bar {
 report::Plot bar_plot(const std::string& name, const std::string& title, const std::string& axis,
                       const std::vector<Bar>& bars) {
   std::ostringstream text;
-  double most = 1;
+  double max = 1;
   text << report::quiet_style() << "$bars << EOD\n";
   for (std::size_t i = 0; i < bars.size(); ++i) {
-    most = std::max(most, bars[i].ns);
+    max = std::max(max, bars[i].ns);
     text << i << ' ' << report::number(std::max(bars[i].ns, 0.0)) << " \"" << bars[i].name
          << "\" \"" << bars[i].says << "\"\n";
   }
@@ -140,7 +140,7 @@ report::Plot bar_plot(const std::string& name, const std::string& title, const s
        << '\n'
        << "set key off\nset style fill solid 0.85 noborder\nunset grid\nset grid xtics\n"
        << "set yrange [" << report::number(static_cast<double>(bars.size()) - 0.4) << ":-0.6]\n"
-       << "set xrange [0:" << report::number(1.75 * most) << "]\nset ytics scale 0 noenhanced\n"
+       << "set xrange [0:" << report::number(1.75 * max) << "]\nset ytics scale 0 noenhanced\n"
        << "plot $bars using (0):1:(0):2:($1-0.28):($1+0.28):ytic(3) with boxxyerror lc rgb '"
        << report::kForceInk
        << "', $bars using 2:1:4 with labels left offset 0.8,0 noenhanced tc rgb '" << report::kInk

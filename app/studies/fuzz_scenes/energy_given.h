@@ -17,14 +17,14 @@ class EnergyGiven {
   /// (J).
   void book(double work, double held) noexcept {
     credit_ = std::min(credit_ - work, held);
-    most_ = std::max(most_, -credit_);
+    max_ = std::max(max_, -credit_);
   }
   /// Returns the maximum, J; 0 for a passive scene.
-  double most() const noexcept { return most_; }
+  double max() const noexcept { return max_; }
 
  private:
   double credit_ = 0;  // J; below 0: energy was added
-  double most_ = 0;    // J, maximum so far
+  double max_ = 0;     // J, maximum so far
 };
 
 /// Energy (J) that a gate without an energy stage may release in any window: the bound of hard case

@@ -172,7 +172,7 @@ driver::Result<TroubleReport> study_trouble(const TroubleOptions& options,
     if (!f.refused) nearest = std::max(nearest, f.given / f.given_bound);
     given = std::max(given, f.given);
     given_scenes += f.given > kGivenMuch ? 1 : 0;
-    oscillating += !f.must_oscillate && f.limit_cycle > kLimitCycleMost ? 1 : 0;
+    oscillating += !f.must_oscillate && f.limit_cycle > kLimitCycleMax ? 1 : 0;
     unforetold += f.unforetold ? 1 : 0;
     share = std::max(share, f.force_share);
     (f.must_oscillate ? known : limit_cycle) =

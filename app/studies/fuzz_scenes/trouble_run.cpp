@@ -70,7 +70,7 @@ class Account {
     }
     found_.limit_cycle = found_.not_finite > 0 ? 0 : std::sqrt(square);
     found_.contact /= std::max(ticks_, 1.0);
-    found_.given = given_.most();
+    found_.given = given_.max();
     return found_;
   }
 
@@ -119,7 +119,7 @@ TroubleFound run_for_trouble(const std::filesystem::path& scene_file, const Rand
                                            session.scene().energy)) +
       scene.own_energy;
   found.must_oscillate = scene.oscillates;
-  found.unforetold = !found.must_oscillate && found.limit_cycle > kLimitCycleMost &&
+  found.unforetold = !found.must_oscillate && found.limit_cycle > kLimitCycleMax &&
                      stability::rest_causes(session.scene()).empty();
   return found;
 }

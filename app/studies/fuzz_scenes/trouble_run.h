@@ -16,7 +16,7 @@ struct TroubleFound {
   double force_share = 0;       ///< Largest sent force, relative to the arm's limit.
   double limit_cycle = 0;       ///< Force above 50 Hz in the last quarter of a second, N RMS.
   bool must_oscillate = false;  ///< As RandomScene::oscillates.
-  /// Whether its limit cycle is larger than kLimitCycleMost and no law names a cause (rest_causes).
+  /// Whether its limit cycle is larger than kLimitCycleMax and no law names a cause (rest_causes).
   bool unforetold = false;
   double speed = 0;  ///< Maximum speed of the tip, m/s.
   double given = 0;  ///< Maximum energy from the motors in any window (EnergyGiven), J.
@@ -32,7 +32,7 @@ struct TroubleFound {
 };
 
 /// The force above 50 Hz that counts as a limit cycle at rest, N RMS [PHYSICS 6].
-inline constexpr double kLimitCycleMost = 0.02;
+inline constexpr double kLimitCycleMax = 0.02;
 
 /// Runs a scene's file and computes the account.
 ///

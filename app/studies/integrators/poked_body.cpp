@@ -59,7 +59,7 @@ class Compared {
       size_ = std::max(size_, truth[i].norm());
     }
   }
-  void tell(WorkPoint& point) const {
+  void set_errors(WorkPoint& point) const {
     point.error = error_ / size_;
     point.diverged = diverged_ || !(point.error < 10);
   }
@@ -74,17 +74,17 @@ class Compared {
 
 // Runs a copy of `rest` with `look` as observer, then others for the minimum time per frame.
 template <class Motion, class Vector, class Look>
-double least_frame_us(const Motion& rest, std::int32_t poked, const Vector& force, int poke_frames,
-                      int frames, Look&& look) {
+double min_frame_us(const Motion& rest, std::int32_t poked, const Vector& force, int poke_frames,
+                    int frames, Look&& look) {
   Motion seen = rest;
-  double least = 0;
+  double min = 0;
   for (int frame = 0; frame < frames; ++frame) {
     const double begin = worked();
     frame_of(seen, poked, force, frame < poke_frames);
-    least += worked() - begin;
+    min += worked() - begin;
     look(seen, frame);
   }
-  double spent = least;
+  double spent = min;
   for (int i = 1; i < kRuns && spent < kRunsBudget; ++i) {
     Motion unseen = rest;
     const double begin = worked();
@@ -93,9 +93,9 @@ double least_frame_us(const Motion& rest, std::int32_t poked, const Vector& forc
     }
     const double seconds = worked() - begin;
     spent += seconds;
-    least = std::min(least, seconds);
+    min = std::min(min, seconds);
   }
-  return least * 1e6 / frames;
+  return min * 1e6 / frames;
 }
 
 }  // namespace
@@ -120,11 +120,11 @@ driver::Result<WorkPoint> measure(const PokedBody<kDof>& body, render::SpringSch
   WorkPoint point{std::string(render::name_of(scheme)), substeps};
   Compared<kDof> compared(body);
   point.frame_us =
-      least_frame_us(*built, body.poked, body.force, body.poke_frames,
-                     static_cast<int>(body.truth.size()), [&](const auto& motion, int frame) {
-                       compared.look(frame, [&](std::size_t i) { return motion.u()[i]; });
-                     });
-  compared.tell(point);
+      min_frame_us(*built, body.poked, body.force, body.poke_frames,
+                   static_cast<int>(body.truth.size()), [&](const auto& motion, int frame) {
+                     compared.look(frame, [&](std::size_t i) { return motion.u()[i]; });
+                   });
+  compared.set_errors(point);
   return point;
 }
 
@@ -134,12 +134,12 @@ driver::Result<WorkPoint> measure_modal(const PokedBody<kDof>& body) {
   if (!built) return built.error();
   WorkPoint point{std::string(render::name_of(render::SpringScheme::kModal)), 1};
   Compared<kDof> compared(body);
-  point.frame_us = least_frame_us(
+  point.frame_us = min_frame_us(
       *built, body.poked, body.force, body.poke_frames, static_cast<int>(body.truth.size()),
       [&](const auto& motion, int frame) {
         compared.look(frame, [&](std::size_t i) { return motion.u(static_cast<std::int32_t>(i)); });
       });
-  compared.tell(point);
+  compared.set_errors(point);
   return point;
 }
 

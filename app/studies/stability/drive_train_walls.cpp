@@ -42,12 +42,11 @@ std::optional<LoneJoint> lone_joint(const scene::ArmFile& arm) {
   return std::nullopt;
 }
 
-std::vector<double> series(double least, double most, int count, bool logarithmic) {
+std::vector<double> series(double min, double max, int count, bool logarithmic) {
   std::vector<double> values;
   for (int i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / (count - 1);
-    values.push_back(logarithmic ? least * std::pow(most / least, share)
-                                 : least + (most - least) * share);
+    values.push_back(logarithmic ? min * std::pow(max / min, share) : min + (max - min) * share);
   }
   return values;
 }
@@ -70,17 +69,17 @@ driver::Result<bool> force_grows(const scene::ArmFile& arm, stability::WallCase 
   const std::vector<double> quick =
       stability::high_passed(run->push, rate, std::min(between, 0.3 * rate));
   const auto grown = [&](const std::vector<double>& force) {
-    const auto most = [&](double from, double to) {
+    const auto max = [&](double from, double to) {
       const auto at = [&](double share) {
         return force.begin() +
                static_cast<std::ptrdiff_t>(share * static_cast<double>(force.size()));
       };
-      const auto [least, largest] = std::minmax_element(at(from), at(to));
-      return std::max(*largest, -*least);
+      const auto [min, largest] = std::minmax_element(at(from), at(to));
+      return std::max(*largest, -*min);
     };
     // After early growth up to the motors' limit, it cannot grow further.
-    if (most(0.3, 1) > kFarFromStart * kStartForce) return true;
-    return most(0.75, 1) > std::max(most(0.3, 0.55), 2 * wall.direction.force_step);
+    if (max(0.3, 1) > kFarFromStart * kStartForce) return true;
+    return max(0.75, 1) > std::max(max(0.3, 0.55), 2 * wall.direction.force_step);
   };
   return grown(run->push) || grown(quick);
 }

@@ -13,25 +13,25 @@ namespace thimble::studies {
 namespace {
 
 // The limits of all maps: five decades of each, from the passivity bound to beyond any arm.
-constexpr double kStiffnessLeast = 1, kStiffnessMost = 1e5;  // N/m
-constexpr double kDampingLeast = 1e-3, kDampingMost = 1e2;   // N s/m
+constexpr double kStiffnessMin = 1, kStiffnessMax = 1e5;  // N/m
+constexpr double kDampingMin = 1e-3, kDampingMax = 1e2;   // N s/m
 constexpr double kQuiet = 0.25;   // counts: a smaller oscillation counts as rest
 constexpr double kEdgeRange = 4;  // an edge is searched within this factor of the law
 
 /// Returns `count` values from `least` to `most`, evenly spaced on a logarithmic scale.
-std::vector<double> octaves(double least, double most, int count) {
+std::vector<double> octaves(double min, double max, int count) {
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
-    values.push_back(least * std::pow(most / least, static_cast<double>(i) / (count - 1)));
+    values.push_back(min * std::pow(max / min, static_cast<double>(i) / (count - 1)));
   }
   return values;
 }
 
-std::vector<double> even(double least, double most, int count) {
+std::vector<double> even(double min, double max, int count) {
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) values.push_back(least + (most - least) * i / (count - 1));
+  for (int i = 0; i < count; ++i) values.push_back(min + (max - min) * i / (count - 1));
   return values;
 }
 
@@ -99,9 +99,9 @@ driver::Result<double> arm_edge(const StabilitySetup& setup,
   wall.damping = damping;
   const double quiet = kQuiet * direction.step;
   return setup.hand.stiffness > 0
-             ? pressed_edge(setup.arm, wall, quiet, kStiffnessLeast, kStiffnessMost)
-             : released_edge(setup.arm, wall, kReleaseSpeed, 2, quiet, kStiffnessLeast,
-                             kStiffnessMost);
+             ? pressed_edge(setup.arm, wall, quiet, kStiffnessMin, kStiffnessMax)
+             : released_edge(setup.arm, wall, kReleaseSpeed, 2, quiet, kStiffnessMin,
+                             kStiffnessMax);
 }
 
 driver::Result<double> cycle(const StabilitySetup& setup, const StabilityCell& cell) {
@@ -128,7 +128,7 @@ driver::Result<double> step_edge(const StabilitySetup& setup, double step) {
   wall.tip = setup.arm.simulated.plant;
   wall.velocity_corner = 0;
   wall.step = step;
-  return released_edge(setup.arm, wall, kReleaseSpeed, 2, 1e-3 * step, 10, kStiffnessMost);
+  return released_edge(setup.arm, wall, kReleaseSpeed, 2, 1e-3 * step, 10, kStiffnessMax);
 }
 
 /// Returns the number of a cell as a list.
@@ -139,8 +139,8 @@ driver::Result<std::vector<double>> alone(const driver::Result<double>& number) 
 
 void add_maps(const StabilitySetup& setup, std::vector<StabilityCell>& cells) {
   const int count = setup.coarse ? 11 : 51;
-  const auto stiffnesses = octaves(kStiffnessLeast, kStiffnessMost, count);
-  const auto dampings = octaves(kDampingLeast, kDampingMost, count);
+  const auto stiffnesses = octaves(kStiffnessMin, kStiffnessMax, count);
+  const auto dampings = octaves(kDampingMin, kDampingMax, count);
   for (const auto part : {StabilityPart::kLinearMap, StabilityPart::kArmMap}) {
     for (const double damping : dampings) {
       for (const double stiffness : stiffnesses) cells.push_back({part, stiffness, damping});
@@ -148,7 +148,7 @@ void add_maps(const StabilitySetup& setup, std::vector<StabilityCell>& cells) {
   }
   for (const auto part : {StabilityPart::kLinearEdge, StabilityPart::kArmEdge,
                           StabilityPart::kGuardedEdge, StabilityPart::kDiagonalEdge}) {
-    for (const double damping : octaves(kDampingLeast, kDampingMost, setup.coarse ? 11 : 101)) {
+    for (const double damping : octaves(kDampingMin, kDampingMax, setup.coarse ? 11 : 101)) {
       cells.push_back({part, 0, damping});
     }
   }
@@ -163,8 +163,8 @@ void add_restitution(const StabilitySetup& setup, std::vector<StabilityCell>& ce
                           Series{0.00025, 0, 0}, Series{0.000125, 0, 0}, Series{0.001, 0, 2}}) {
     // Beyond this, the law's condition K L^2 / m << 1 is violated [PHYSICS 1.1].
     const double latency = s.period / 2 + s.delay;
-    const double most = std::min(0.3 * mass / (latency * latency), 3e4);
-    for (const double stiffness : octaves(100, most, setup.coarse ? 4 : 20)) {
+    const double max = std::min(0.3 * mass / (latency * latency), 3e4);
+    for (const double stiffness : octaves(100, max, setup.coarse ? 4 : 20)) {
       cells.push_back({StabilityPart::kRestitution, stiffness, s.damping, s.period, s.delay});
     }
   }
@@ -241,7 +241,7 @@ driver::Result<std::vector<double>> measure_stability(const StabilitySetup& setu
     case StabilityPart::kLinearEdge: {
       stability::WallCase wall = linear_case(setup);
       wall.damping = cell.b;
-      return alone(linear_edge(setup.arm, wall, kStiffnessLeast, kStiffnessMost));
+      return alone(linear_edge(setup.arm, wall, kStiffnessMin, kStiffnessMax));
     }
     case StabilityPart::kArmEdge:
       return alone(arm_edge(setup, setup.direction, cell.b, false));
@@ -259,7 +259,7 @@ driver::Result<std::vector<double>> measure_stability(const StabilitySetup& setu
       wall.delay_ns = to_ns(cell.d);
       const auto found = throw_at_wall(setup.arm, wall, setup.coarse ? 25 : 200);
       if (!found) return found.error();
-      return std::vector<double>{found->mean, found->least, found->most};
+      return std::vector<double>{found->mean, found->min, found->max};
     }
     case StabilityPart::kCycle:
       return alone(cycle(setup, cell));

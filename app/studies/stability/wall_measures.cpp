@@ -10,8 +10,8 @@
 namespace thimble::studies {
 namespace {
 
-constexpr double kTouchSpeed = 0.1;   // m/s: a light tap [PHYSICS 1.5 and 1.6]
-constexpr double kStartMost = 0.008;  // m, of a small oscillation: far from the joints' limits
+constexpr double kTouchSpeed = 0.1;  // m/s: a light tap [PHYSICS 1.5 and 1.6]
+constexpr double kStartMax = 0.008;  // m, of a small oscillation: far from the joints' limits
 constexpr double kFarthest = 0.05;   // m from the middle: a small oscillation that reaches it grows
 constexpr double kCeiling = 25;      // times its initial energy
 constexpr double kFloor = 1e-3;      // of its energy: a smaller oscillation is no longer detected
@@ -20,20 +20,20 @@ constexpr double kOscillations = 20;  // minimum number, for a result independen
 
 /// Returns the value at which a measurement is no longer good, in equal steps of the logarithm.
 template <class Good>
-driver::Result<double> bisect(double least, double most, double share, const Good& good) {
-  for (const double end : {least, most}) {
+driver::Result<double> bisect(double min, double max, double share, const Good& good) {
+  for (const double end : {min, max}) {
     const driver::Result<bool> there = good(end);
     if (!there) return there.error();
-    if (end == least && !*there) return 0.0;
-    if (end == most && *there) return most;
+    if (end == min && !*there) return 0.0;
+    if (end == max && *there) return max;
   }
-  while (most / least > 1 + share) {
-    const double middle = std::sqrt(least * most);
+  while (max / min > 1 + share) {
+    const double middle = std::sqrt(min * max);
     const driver::Result<bool> there = good(middle);
     if (!there) return there.error();
-    (*there ? least : most) = middle;
+    (*there ? min : max) = middle;
   }
-  return std::sqrt(least * most);
+  return std::sqrt(min * max);
 }
 
 /// Returns whether an oscillation stays below `quiet` (m), or why it was not measured.
@@ -63,7 +63,7 @@ void shuffle(Times& times, std::uint64_t seed) {
 }  // namespace
 
 driver::Result<double> growth_rate(const scene::ArmFile& arm, stability::WallCase wall) {
-  const double start = std::min(kStartMost, kStartForce / wall.stiffness);
+  const double start = std::min(kStartMax, kStartForce / wall.stiffness);
   const double mass = wall.tip.mass + wall.hand.mass;
   const double frequency = std::sqrt((wall.stiffness + wall.hand.stiffness) / mass);
   wall.kick = start * frequency;
@@ -75,7 +75,7 @@ driver::Result<double> growth_rate(const scene::ArmFile& arm, stability::WallCas
   if (run.gave_up) return std::log(kFarthest / start) / std::max(run.time.back(), 1e-3);
   const std::vector<double> energies = oscillation_energies(run, wall);
   const std::size_t count = energies.size();
-  const auto most = [&](double from, double to) {
+  const auto max = [&](double from, double to) {
     const auto at = [&](double share) {
       return energies.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(count));
     };
@@ -85,7 +85,7 @@ driver::Result<double> growth_rate(const scene::ArmFile& arm, stability::WallCas
   // measured. Otherwise an early and a late interval are compared, both long enough to contain the
   // oscillation's full energy.
   const double first = 0.5 * mass * wall.kick * wall.kick;
-  const double late = most(0.85, 1);
+  const double late = max(0.85, 1);
   // If the spring's force is below a step of the motors' current, the tip may rest next to the
   // middle, which is no oscillation.
   const double asleep =
@@ -99,12 +99,12 @@ driver::Result<double> growth_rate(const scene::ArmFile& arm, stability::WallCas
   if (late < floor) {
     return 0.5 * std::log(std::min(floor / first, 0.5)) / std::max(run.time[last_alive], 1e-3);
   }
-  return 0.5 * std::log(late / most(0.1, 0.25)) / (0.75 * run.time.back());
+  return 0.5 * std::log(late / max(0.1, 0.25)) / (0.75 * run.time.back());
 }
 
-driver::Result<double> linear_edge(const scene::ArmFile& arm, stability::WallCase wall,
-                                   double least, double most) {
-  return bisect(least, most, 0.003, [&](double stiffness) {
+driver::Result<double> linear_edge(const scene::ArmFile& arm, stability::WallCase wall, double min,
+                                   double max) {
+  return bisect(min, max, 0.003, [&](double stiffness) {
     wall.stiffness = stiffness;
     const auto rate = growth_rate(arm, wall);
     if (!rate) return driver::Result<bool>(rate.error());
@@ -159,17 +159,17 @@ driver::Result<double> released_oscillation(const scene::ArmFile& arm, stability
 }
 
 driver::Result<double> pressed_edge(const scene::ArmFile& arm, stability::WallCase wall,
-                                    double quiet, double least, double most) {
-  return bisect(least, most, 0.005, [&](double stiffness) {
+                                    double quiet, double min, double max) {
+  return bisect(min, max, 0.005, [&](double stiffness) {
     wall.stiffness = stiffness;
     return is_quiet(pressed_oscillation(arm, wall), quiet);
   });
 }
 
 driver::Result<double> released_edge(const scene::ArmFile& arm, stability::WallCase wall,
-                                     double speed, double duration, double quiet, double least,
-                                     double most) {
-  return bisect(least, most, 0.005, [&](double stiffness) {
+                                     double speed, double duration, double quiet, double min,
+                                     double max) {
+  return bisect(min, max, 0.005, [&](double stiffness) {
     wall.stiffness = stiffness;
     return is_quiet(released_oscillation(arm, wall, speed, duration), quiet);
   });
@@ -203,8 +203,8 @@ driver::Result<Restitution> throw_at_wall(const scene::ArmFile& arm, stability::
     const double out = run.v[std::min(k + late, run.v.size() - 1)];
     const double e = in < 0 ? std::abs(out / in) : 0;
     found.mean += e / phases;
-    found.least = std::min(found.least, e);
-    found.most = std::max(found.most, e);
+    found.min = std::min(found.min, e);
+    found.max = std::max(found.max, e);
   }
   return found;
 }

@@ -16,8 +16,8 @@ driver::Result<double> growth_rate(const scene::ArmFile& arm, stability::WallCas
 
 /// Returns by bisection the largest stiffness whose oscillations do not grow, N/m, to 0.3 % between
 /// `least` and `most`; 0 if even `least` grows, `most` if none does.
-driver::Result<double> linear_edge(const scene::ArmFile& arm, stability::WallCase wall,
-                                   double least, double most);
+driver::Result<double> linear_edge(const scene::ArmFile& arm, stability::WallCase wall, double min,
+                                   double max);
 
 /// Returns the oscillation of the tip at the end of a run, peak to peak in the last quarter of the
 /// time, m; `give_up` of the case if the tip went too far.
@@ -35,15 +35,15 @@ driver::Result<double> released_oscillation(const scene::ArmFile& arm, stability
 /// Returns by bisection the largest stiffness at which `pressed_oscillation` or
 /// `released_oscillation` stays below `quiet` (m), N/m, to 0.5 %; 0 if even the smallest does not.
 driver::Result<double> pressed_edge(const scene::ArmFile& arm, stability::WallCase wall,
-                                    double quiet, double least, double most);
+                                    double quiet, double min, double max);
 driver::Result<double> released_edge(const scene::ArmFile& arm, stability::WallCase wall,
-                                     double speed, double duration, double quiet, double least,
-                                     double most);
+                                     double speed, double duration, double quiet, double min,
+                                     double max);
 
 /// Ratio of a tip's speed after and before the wall, over several sampling phases.
 struct Restitution {
   double mean = 0;
-  double least = 0, most = 0;
+  double min = 0, max = 0;
 };
 
 /// Throws the free tip against a one-sided wall at 0.1 m/s in `phases` sampling phases.

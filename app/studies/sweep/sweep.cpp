@@ -36,10 +36,10 @@ class Work {
       : cells_(std::move(cells)), stop_(stop) {}
 
   /// Returns up to `most` of the next cells; none if all are assigned, or the sweep is to end.
-  std::vector<std::size_t> take(std::size_t most) {
+  std::vector<std::size_t> take(std::size_t max) {
     const std::scoped_lock lock(mutex_);
     if (trouble_ || stop_.load(std::memory_order_relaxed)) return {};
-    const std::size_t count = std::min(most, cells_.size() - next_);
+    const std::size_t count = std::min(max, cells_.size() - next_);
     const auto begin = cells_.begin() + static_cast<std::ptrdiff_t>(next_);
     next_ += count;
     return {begin, begin + static_cast<std::ptrdiff_t>(count)};
@@ -269,11 +269,12 @@ int jobs_here() {
   CPU_ZERO(&allowed);
   int cores = 1;
   if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) cores = CPU_COUNT(&allowed);
-  int beside = 1;
-  if (const char* text = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE")) beside = std::atoi(text);
+  int local_processes = 1;
+  if (const char* text = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE"))
+    local_processes = std::atoi(text);
   // mpirun may have assigned cores to this process, or all cores to every process.
   const auto all = static_cast<int>(std::thread::hardware_concurrency());
-  if (beside > 1 && cores >= all) cores /= beside;
+  if (local_processes > 1 && cores >= all) cores /= local_processes;
   return std::max(cores, 1);
 }
 

@@ -25,12 +25,12 @@ struct RumbleLevel {
 class RumbleOutput {
  public:
   virtual ~RumbleOutput() = default;
-  /// Sets the motors' intensity until the next call, or for kRumbleMost.
+  /// Sets the motors' intensity until the next call, or for kRumbleMax.
   virtual void rumble(const RumbleLevel& level) = 0;
 };
 
 /// Time (s) after which a gamepad stops by itself, and after which a run without new ticks counts
 /// as stopped. Chosen.
-inline constexpr double kRumbleMost = 0.2;
+inline constexpr double kRumbleMax = 0.2;
 
 }  // namespace thimble::view

@@ -36,7 +36,7 @@ class EvdevRumble final : public RumbleOutput {
   explicit EvdevRumble(int file) : file_(file) {
     effect_.type = FF_RUMBLE;
     effect_.id = -1;  // a new effect; the kernel writes its number here
-    effect_.replay.length = static_cast<std::uint16_t>(1e3 * kRumbleMost);  // ms
+    effect_.replay.length = static_cast<std::uint16_t>(1e3 * kRumbleMax);  // ms
   }
   EvdevRumble(const EvdevRumble&) = delete;
   EvdevRumble& operator=(const EvdevRumble&) = delete;

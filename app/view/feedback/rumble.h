@@ -9,7 +9,7 @@
 namespace thimble::view {
 
 /// Opens the first gamepad that can rumble, by the kernel's force feedback (evdev, FF_RUMBLE).
-/// `folder`: folder of the event files. The kernel stops the motors kRumbleMost after the last
+/// `folder`: folder of the event files. The kernel stops the motors kRumbleMax after the last
 /// command, and when this object is destroyed or its process dies. The error says what to do.
 /// Real-time: never from the servo thread.
 driver::Result<std::unique_ptr<RumbleOutput>> open_rumble(

@@ -47,13 +47,13 @@ class AlsaCard final : public SoundOutput {
 };
 
 /// Suppresses ALSA's messages on the terminal.
-void say_nothing(const char* /*file*/, int /*line*/, const char* /*function*/, int /*error*/,
-                 const char* /*format*/, ...) {}
+void ignore_message(const char* /*file*/, int /*line*/, const char* /*function*/, int /*error*/,
+                    const char* /*format*/, ...) {}
 
 }  // namespace
 
 driver::Result<std::unique_ptr<SoundOutput>> open_sound_card() {
-  snd_lib_error_set_handler(say_nothing);
+  snd_lib_error_set_handler(ignore_message);
   snd_pcm_t* card = nullptr;
   int status = snd_pcm_open(&card, "default", SND_PCM_STREAM_PLAYBACK, SND_PCM_NONBLOCK);
   if (status >= 0) {

@@ -9,7 +9,7 @@ namespace {
 constexpr double kRumbleFull = 0.5;  // N, change between ticks for full intensity; chosen
 // Time after which a level is sent again, ns: twice before the gamepad would stop. A new level is
 // sent no more often either, because the gamepad's cable transfers 8 ms of commands at a time.
-constexpr auto kBetween = static_cast<std::int64_t>(1e9 * kRumbleMost / 4);
+constexpr auto kBetween = static_cast<std::int64_t>(1e9 * kRumbleMax / 4);
 
 Eigen::Vector3d force(const driver::TickRecord& tick) {
   return {tick.f_sent_W[0], tick.f_sent_W[1], tick.f_sent_W[2]};
@@ -68,7 +68,7 @@ void TouchPlayer::step(const session::SharedReader& run, std::int64_t now_ns) {
     if (!samples_.empty()) sound_->play(samples_);
   }
   if (!rumble_) return;
-  const bool stalled = static_cast<double>(now_ns - newest_ns_) > 1e9 * kRumbleMost;
+  const bool stalled = static_cast<double>(now_ns - newest_ns_) > 1e9 * kRumbleMax;
   if (stalled || run.state() != session::RunState::kRunning) return stop();
   const double force_max = run.scene().force_max;
   if (!ticks_.empty() && force_max > 0) rumble(rumble_of(ticks_, force_max), now_ns);

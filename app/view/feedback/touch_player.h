@@ -30,7 +30,7 @@ class TouchPlayer {
   void begin(const session::SharedReader& run);
   /// Plays what is new in the run passed to `begin`; call it about 50 times a second. `now_ns`:
   /// time of a monotonic clock. The gamepad stops if the run pauses, ends, or has no new tick for
-  /// kRumbleMost.
+  /// kRumbleMax.
   void step(const session::SharedReader& run, std::int64_t now_ns);
   /// Stops the gamepad, because there is no run.
   void stop();

@@ -15,9 +15,9 @@ constexpr double kSpreadTime = 0.05;   // s, time constant of the direction of t
 constexpr double kClickHz = 400;       // tap of a hard object: A(v) e^-Bt sin wt [Okamura]
 constexpr double kClickTime = 0.008;   // s, decay to 1/e
 constexpr double kClickSpeed = 0.2;    // m/s at which a click is loudest
-constexpr double kClickMost = 0.4;     // of full scale 1
+constexpr double kClickMax = 0.4;      // of full scale 1
 constexpr double kHissPerWatt = 0.25;  // of full scale 1, per root of the friction power
-constexpr double kHissMost = 0.1;
+constexpr double kHissMax = 0.1;
 constexpr double kHissHz = 900;     // centre frequency of the noise
 constexpr double kHissWidth = 0.7;  // 1/Q of the band-pass
 constexpr double kOpen = 0.002;     // s, opening time of the gate
@@ -25,8 +25,8 @@ constexpr double kHold = 0.06;      // s that the gate stays open after the last
                                     // click can decay
 constexpr double kClose = 0.02;     // s, closing time of the gate
 
-constexpr std::uint64_t kNoiseSeed = 0x9e3779b97f4a7c15;                    // any but 0
-constexpr std::int64_t kPeriodLeast = 10'000, kPeriodMost = 1'000'000'000;  // ns
+constexpr std::uint64_t kNoiseSeed = 0x9e3779b97f4a7c15;                 // any but 0
+constexpr std::int64_t kPeriodMin = 10'000, kPeriodMax = 1'000'000'000;  // ns
 
 Vector3d vector(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
@@ -35,7 +35,7 @@ Vector3d vector(const std::array<double, 3>& v) {
 }  // namespace
 
 TouchSound::TouchSound(std::int64_t period_ns)
-    : period_ns_(std::clamp(period_ns, kPeriodLeast, kPeriodMost)),
+    : period_ns_(std::clamp(period_ns, kPeriodMin, kPeriodMax)),
       upsampler_(1e-9 * static_cast<double>(period_ns_) * kRate) {
   period_ = 1e-9 * static_cast<double>(period_ns_);
   // Butterworth high-pass of second order by the bilinear transform [S: R. Bristow-Johnson, Audio
@@ -79,7 +79,7 @@ double TouchSound::vibration(const Vector3d& f) {
 void TouchSound::begin_touch(const driver::TickRecord& tick) {
   const double speed = std::max(0.0, -vector(tick.v_WT).dot(vector(tick.n_W)));
   click_ = 0;
-  click_aside_ = kClickMost * std::min(1.0, speed / kClickSpeed);
+  click_aside_ = kClickMax * std::min(1.0, speed / kClickSpeed);
 }
 
 /// Returns the next sample of click and hiss.
@@ -115,7 +115,7 @@ void TouchSound::one_tick(const driver::TickRecord& tick, std::vector<float>& sa
     const Vector3d n = vector(tick.n_W);
     const Vector3d aside = f - f.dot(n) * n;
     const double power = std::abs(aside.dot(vector(tick.v_WT)));
-    hiss_ = std::min(kHissMost, kHissPerWatt * std::sqrt(power));
+    hiss_ = std::min(kHissMax, kHissPerWatt * std::sqrt(power));
   }
   if (!std::isfinite(hiss_)) hiss_ = 0;
   const bool open = untouched_ < kHold;
@@ -135,7 +135,7 @@ void TouchSound::take(const driver::TickRecord& tick, std::vector<float>& sample
   last_ns_ = tick.time_ns;
   if (!first) {
     const std::int64_t missing = (since + period_ns_ / 2) / period_ns_ - 1;
-    const bool held = missing > 0 && static_cast<double>(missing) * period_ <= kGapMost;
+    const bool held = missing > 0 && static_cast<double>(missing) * period_ <= kGapMax;
     if (since <= 0 || (missing > 0 && !held)) reset();
     for (std::int64_t i = 0; held && i < missing; ++i) one_tick(tick, samples);
   }

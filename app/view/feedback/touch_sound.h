@@ -29,11 +29,11 @@ class TouchSound {
   explicit TouchSound(std::int64_t period_ns);
 
   /// Takes a tick and appends its sound: kRate times the period, -kLoudest to kLoudest. Missing
-  /// ticks up to kGapMost are replaced by the one after them. A longer gap is silent.
+  /// ticks up to kGapMax are replaced by the one after them. A longer gap is silent.
   void take(const driver::TickRecord& tick, std::vector<float>& samples);
 
  private:
-  static constexpr double kGapMost = 0.05;  // s, chosen: a longer held value is audible as an error
+  static constexpr double kGapMax = 0.05;  // s, chosen: a longer held value is audible as an error
 
   void reset();
   double vibration(const Eigen::Vector3d& f);

@@ -36,7 +36,7 @@ std::unique_ptr<Output> opened(driver::Result<std::unique_ptr<Output>> output,
 
 }  // namespace
 
-TouchThread::TouchThread(const FeltChoice& choice) {
+TouchThread::TouchThread(const FeedbackChoice& choice) {
   std::unique_ptr<SoundOutput> sound;
   std::unique_ptr<RumbleOutput> rumble;
   if (choice.sound) sound = opened(open_sound_card(), trouble_);

@@ -8,7 +8,7 @@
 namespace thimble::view {
 
 /// The chosen outputs: sound and rumble.
-struct FeltChoice {
+struct FeedbackChoice {
   bool sound = false;
   bool rumble = false;
 };
@@ -18,7 +18,7 @@ struct FeltChoice {
 class TouchThread {
  public:
   /// Opens the chosen outputs. Outputs that cannot be opened are omitted, and `trouble` says why.
-  explicit TouchThread(const FeltChoice& choice);
+  explicit TouchThread(const FeedbackChoice& choice);
 
   /// Plays the runs of this name from now on. Call it once.
   void follow(const std::string& run);

@@ -20,12 +20,12 @@ void put(std::string& bytes, std::uint32_t number, int size) {
 }  // namespace
 
 std::vector<std::int16_t> sixteen_bits(std::span<const float> samples) {
-  constexpr float kMost = std::numeric_limits<std::int16_t>::max();
+  constexpr float kMax = std::numeric_limits<std::int16_t>::max();
   std::vector<std::int16_t> whole;
   whole.reserve(samples.size());
   for (const float x : samples) {
     const float bounded = std::isfinite(x) ? std::clamp(x, -1.0F, 1.0F) : 0;
-    whole.push_back(static_cast<std::int16_t>(std::lround(kMost * bounded)));
+    whole.push_back(static_cast<std::int16_t>(std::lround(kMax * bounded)));
   }
   return whole;
 }
@@ -33,8 +33,8 @@ std::vector<std::int16_t> sixteen_bits(std::span<const float> samples) {
 // [S] IBM and Microsoft, Multimedia Programming Interface and Data Specifications 1.0, 1991: RIFF
 // WAVE with format 1 (PCM).
 driver::Result<void> write_wav(std::span<const float> samples, int rate, const std::string& file) {
-  constexpr std::size_t kMost = (std::numeric_limits<std::uint32_t>::max() - kHeaderBytes) / 2;
-  if (samples.size() > kMost) {
+  constexpr std::size_t kMax = (std::numeric_limits<std::uint32_t>::max() - kHeaderBytes) / 2;
+  if (samples.size() > kMax) {
     return driver::Error{file +
                          " cannot be written: the sound is longer than a WAV file can be (4 GB)."};
   }

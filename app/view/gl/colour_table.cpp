@@ -9,7 +9,7 @@
 namespace thimble::view {
 namespace {
 
-constexpr std::size_t kMost = 256;
+constexpr std::size_t kMax = 256;
 constexpr int kBits = 6;  // of each channel, for the lookup of the nearest colour
 constexpr int kDrop = 8 - kBits;
 
@@ -72,7 +72,7 @@ ColourTable::ColourTable(const std::vector<const Picture*>& pictures)
             [](const Counted& a, const Counted& b) { return a.rgb < b.rgb; });
   std::vector<Box> boxes = {{0, list.size()}};
   measure(list, boxes[0]);
-  while (boxes.size() < kMost) {
+  while (boxes.size() < kMax) {
     const auto widest = std::max_element(
         boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.cost < b.cost; });
     if (!(widest->cost > 0)) break;
@@ -121,7 +121,7 @@ std::uint8_t ColourTable::nearest(int r, int g, int b) const {
                                             ((g >> kDrop) << kBits) | (b >> kDrop));
   if (known_[key] >= 0) return static_cast<std::uint8_t>(known_[key]);
   int best = 0;
-  int least = std::numeric_limits<int>::max();
+  int min = std::numeric_limits<int>::max();
   const auto middle = [](int c) { return (c >> kDrop << kDrop) + (1 << kDrop) / 2; };
   for (std::size_t i = 0; i < colours_.size(); ++i) {
     // People distinguish greens best, and reds better than blues.
@@ -129,8 +129,8 @@ std::uint8_t ColourTable::nearest(int r, int g, int b) const {
     const int d_g = middle(g) - colours_[i][1];
     const int d_b = middle(b) - colours_[i][2];
     const int distance = 2 * d_r * d_r + 4 * d_g * d_g + d_b * d_b;
-    if (distance < least) {
-      least = distance;
+    if (distance < min) {
+      min = distance;
       best = static_cast<int>(i);
     }
   }

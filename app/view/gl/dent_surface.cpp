@@ -82,9 +82,9 @@ Eigen::Vector3d DentSurface::weights(const render::BodyPatch& patch, std::uint16
   const auto& [one, other] = sources_[point];
   if (other >= 0) {
     // On the common edge of both triangles, so that both get the same weights.
-    const auto& beside = triangles_[static_cast<std::size_t>(one == source ? other : one)];
+    const auto& neighbour = triangles_[static_cast<std::size_t>(one == source ? other : one)];
     const auto shared = [&](std::size_t k) {
-      return std::find(beside.begin(), beside.end(), corners[k % 3]) != beside.end();
+      return std::find(neighbour.begin(), neighbour.end(), corners[k % 3]) != neighbour.end();
     };
     for (std::size_t k = 0; k < 3; ++k) {
       if (!shared(k) || !shared(k + 1)) continue;

@@ -166,7 +166,7 @@ driver::Result<void> write_film(const std::vector<Picture>& pictures, double fra
   if (said == nullptr || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return driver::Error{file.string() + " cannot be written: too many open files."};
   }
-  auto target = output::OutputFile::open(file, output::kFilm);
+  auto target = output::OutputFile::open(file, output::kAnimation);
   if (!target) return target.error();
   Descriptor ours(ends[0]);
   Descriptor theirs(ends[1]);

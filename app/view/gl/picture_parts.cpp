@@ -3,10 +3,10 @@
 namespace thimble::view {
 
 void paint_apart(const Canvas& canvas, const Eigen::AlignedBox2i& box,
-                 const std::function<void()>& within, const std::function<void()>& beside) {
+                 const std::function<void()>& within, const std::function<void()>& outside) {
   const int width = canvas.width();
   const int height = canvas.height() - canvas.strip();
-  if (box.isEmpty()) return beside();
+  if (box.isEmpty()) return outside();
   const auto part = [&](const std::function<void()>& paint, int left, int low, int right,
                         int high) {
     if (right <= left || high <= low) return;
@@ -17,10 +17,10 @@ void paint_apart(const Canvas& canvas, const Eigen::AlignedBox2i& box,
   const Eigen::Vector2i high = box.max();
   glEnable(GL_SCISSOR_TEST);
   part(within, low.x(), low.y(), high.x(), high.y());
-  part(beside, 0, 0, width, low.y());
-  part(beside, 0, high.y(), width, height);
-  part(beside, 0, low.y(), low.x(), high.y());
-  part(beside, high.x(), low.y(), width, high.y());
+  part(outside, 0, 0, width, low.y());
+  part(outside, 0, high.y(), width, height);
+  part(outside, 0, low.y(), low.x(), high.y());
+  part(outside, high.x(), low.y(), width, high.y());
   glDisable(GL_SCISSOR_TEST);
 }
 

@@ -11,6 +11,6 @@ namespace thimble::view {
 /// scene's part), and `beside` for the rest, in up to four parts. All other pixels are masked
 /// meanwhile. If both draw the same, the result equals that of drawing at once.
 void paint_apart(const Canvas& canvas, const Eigen::AlignedBox2i& box,
-                 const std::function<void()>& within, const std::function<void()>& beside);
+                 const std::function<void()>& within, const std::function<void()>& outside);
 
 }  // namespace thimble::view

@@ -25,7 +25,7 @@ void HandInput::step(const HandPush& push, const Camera& camera, const Eigen::Ve
   if (push.let_go) let_go();
   if (push.let_go || !push.any() || !push.share.allFinite() || !p_WT.allFinite()) return;
   if (!hand_.holds) hand_ = {p_WT, true};
-  const double way = speed() * (push.slow ? kSlow : 1) * std::clamp(dt, 0.0, kFrameMost);
+  const double way = speed() * (push.slow ? kSlow : 1) * std::clamp(dt, 0.0, kFrameMax);
   Eigen::Vector3d p =
       hand_.p_WH + way * (push.share.x() * camera.right() + push.share.y() * camera.up() +
                           push.share.z() * camera.towards_eye());

@@ -38,7 +38,7 @@ class HandInput {
   static constexpr double kLeash = 0.04;
   /// Longest duration of a picture that counts, s: after a stall of the window the target does not
   /// jump. Chosen.
-  static constexpr double kFrameMost = 0.1;
+  static constexpr double kFrameMax = 0.1;
 
   /// Returns the source of the hand.
   HandSource source() const { return source_; }
@@ -59,12 +59,12 @@ class HandInput {
             const Eigen::AlignedBox3d& reach, double dt);
 
   /// Returns the target of the hand.
-  const HandWish& hand() const { return hand_; }
+  const MouseHandTarget& hand() const { return hand_; }
 
  private:
   HandSource source_ = HandSource::kMouse;
   std::size_t speed_ = 3;
-  HandWish hand_;
+  MouseHandTarget hand_;
 };
 
 }  // namespace thimble::view

@@ -110,8 +110,8 @@ void HandPanel::step(const std::vector<int>& keys, const Camera& camera,
   if (moves || push.let_go) input_.step(push, camera, p_WT, reach, dt);
 }
 
-void HandPanel::draw_target(const HandWish& hand, const Eigen::Vector3d& p_WT, const Camera& camera,
-                            const ScreenPart& part) const {
+void HandPanel::draw_target(const MouseHandTarget& hand, const Eigen::Vector3d& p_WT,
+                            const Camera& camera, const ScreenPart& part) const {
   const auto behind = [&camera](const Eigen::Vector3d& p_W) {
     return !((p_W - camera.p_WEye()).dot(camera.towards_eye()) < 0);
   };

@@ -25,7 +25,7 @@ class HandPanel {
             const Eigen::AlignedBox3d& reach, double dt, bool moves);
 
   /// Draws the target while the hand is held: a ghost of the tip, with a line to it.
-  void draw_target(const HandWish& hand, const Eigen::Vector3d& p_WT, const Camera& camera,
+  void draw_target(const MouseHandTarget& hand, const Eigen::Vector3d& p_WT, const Camera& camera,
                    const ScreenPart& part) const;
   /// Draws the box for choosing the source of the hand. Returns whether another source was chosen.
   bool draw_box(bool held, const ScreenPart& part);

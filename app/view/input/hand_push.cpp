@@ -14,7 +14,7 @@ Vector without_dead_zone(const Vector& v, double zone) {
   return v / length * std::min(1.0, (length - zone) / (1 - zone));
 }
 
-double one_if(bool held) {
+double as_number(bool held) {
   return held ? 1 : 0;
 }
 
@@ -28,8 +28,8 @@ double pulled(double trigger) {
 }  // namespace
 
 HandPush push_of(const HandKeys& keys) {
-  return {{one_if(keys.right) - one_if(keys.left), one_if(keys.up) - one_if(keys.down),
-           one_if(keys.nearer) - one_if(keys.farther)},
+  return {{as_number(keys.right) - as_number(keys.left), as_number(keys.up) - as_number(keys.down),
+           as_number(keys.nearer) - as_number(keys.farther)},
           keys.slow,
           keys.let_go};
 }

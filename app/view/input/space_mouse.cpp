@@ -39,8 +39,8 @@ constexpr std::array kDevices = {
 constexpr unsigned kDesktopPage = 1, kMultiAxis = 8;
 
 constexpr std::chrono::seconds kBetweenLooks{1};
-constexpr std::size_t kReportMost = 64;  // bytes: a full-speed interrupt packet [S USB 2.0, 5.7.3]
-constexpr int kReportsMost = 256;  // per call; chosen: 4 s of a device that reports every 16 ms
+constexpr std::size_t kReportMax = 64;  // bytes: a full-speed interrupt packet [S USB 2.0, 5.7.3]
+constexpr int kReportsMax = 256;  // per call; chosen: 4 s of a device that reports every 16 ms
 
 }  // namespace
 
@@ -87,8 +87,8 @@ void SpaceMouse::look() {
 std::optional<SpaceMouseState> SpaceMouse::read() {
   if (device_ == nullptr) look();
   if (device_ == nullptr) return {};
-  std::array<unsigned char, kReportMost> report{};
-  for (int i = 0; i < kReportsMost; ++i) {
+  std::array<unsigned char, kReportMax> report{};
+  for (int i = 0; i < kReportsMax; ++i) {
     const int size = hid_read_timeout(device_, report.data(), report.size(), 0);
     if (size < 0) {
       close();

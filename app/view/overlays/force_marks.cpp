@@ -13,18 +13,18 @@ constexpr double kWeakest = 0.06;  // of the strongest force; weaker arrows are 
 
 /// Returns the spacing of a field's samples, m: the maximum length of an arrow.
 double spacing(const std::vector<FieldSample>& field) {
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < field.size(); ++i) {
     const double apart = (field[i].p_W - field[i - 1].p_W).norm();
-    if (apart > 1e-9) least = std::min(least, apart);
+    if (apart > 1e-9) min = std::min(min, apart);
   }
-  return std::isfinite(least) ? least : 0.01;
+  return std::isfinite(min) ? min : 0.01;
 }
 
 double strongest_of(const std::vector<FieldSample>& field) {
-  double most = 0;
-  for (const FieldSample& sample : field) most = std::max(most, sample.f_W.norm());
-  return most;
+  double max = 0;
+  for (const FieldSample& sample : field) max = std::max(max, sample.f_W.norm());
+  return max;
 }
 
 }  // namespace
@@ -39,24 +39,24 @@ Colour force_colour(double share) {
 }
 
 double strongest_force(const DrawnScene& scene, const DrawnMoment& moment) {
-  double most = strongest_of(scene.field);
-  for (const TrailPoint& point : moment.trail) most = std::max(most, point.force);
-  if (!(most > 1e-6) || !std::isfinite(most)) return 0;
-  const double power = std::pow(10, std::floor(std::log10(most)));
+  double max = strongest_of(scene.field);
+  for (const TrailPoint& point : moment.trail) max = std::max(max, point.force);
+  if (!(max > 1e-6) || !std::isfinite(max)) return 0;
+  const double power = std::pow(10, std::floor(std::log10(max)));
   for (const double step : {1.0, 2.0, 5.0}) {
-    if (most <= step * power * (1 + 1e-9)) return step * power;
+    if (max <= step * power * (1 + 1e-9)) return step * power;
   }
   return 10 * power;
 }
 
 void add_field(const DrawnScene& scene, double strongest, ColouredMesh& mesh) {
-  const double most = strongest_of(scene.field);
-  if (!(most > 0) || !(strongest > 0)) return;
+  const double max = strongest_of(scene.field);
+  if (!(max > 0) || !(strongest > 0)) return;
   const double apart = spacing(scene.field);
   for (const FieldSample& sample : scene.field) {
     const double force = sample.f_W.norm();
-    if (!(force > kWeakest * most)) continue;
-    const double length = 0.9 * apart * std::pow(force / most, 0.7);
+    if (!(force > kWeakest * max)) continue;
+    const double length = 0.9 * apart * std::pow(force / max, 0.7);
     const Eigen::Vector3d half = 0.5 * length / force * sample.f_W;
     add_arrow(sample.p_W - half, sample.p_W + half, 0.022 * apart, force_colour(force / strongest),
               mesh);

@@ -6,8 +6,8 @@
 namespace thimble::view {
 namespace {
 
-constexpr double kStep = 3e-4;                      // m: a pixel of a typical picture
-constexpr std::int64_t kLeastTime_ns = 10'000'000;  // limits the trail to 400 points
+constexpr double kStep = 3e-4;                    // m: a pixel of a typical picture
+constexpr std::int64_t kTimeMin_ns = 10'000'000;  // limits the trail to 400 points
 
 }  // namespace
 
@@ -26,7 +26,7 @@ void TipTrail::add(const driver::TickRecord& tick) {
     Kept& last = kept_.back();
     const bool moved = (p_WT - last.point.p_WT).norm() >= kStep;
     // Between two points the largest force counts, so that a short impact is visible.
-    if (!moved || tick.time_ns - last.time_ns < kLeastTime_ns) {
+    if (!moved || tick.time_ns - last.time_ns < kTimeMin_ns) {
       last.point.force = std::max(last.point.force, force);
       return;
     }
@@ -34,7 +34,7 @@ void TipTrail::add(const driver::TickRecord& tick) {
   kept_.push_back({tick.time_ns, {p_WT, force}});
 }
 
-void TipTrail::give(std::vector<TrailPoint>& trail) const {
+void TipTrail::copy_to(std::vector<TrailPoint>& trail) const {
   trail.clear();
   for (const Kept& kept : kept_) trail.push_back(kept.point);
 }

@@ -21,7 +21,7 @@ class TipTrail {
   void add(const driver::TickRecord& tick);
   void clear() { kept_.clear(); }
   /// Writes the path, oldest first, to `trail`.
-  void give(std::vector<TrailPoint>& trail) const;
+  void copy_to(std::vector<TrailPoint>& trail) const;
 
  private:
   struct Kept {

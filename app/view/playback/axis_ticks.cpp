@@ -25,10 +25,10 @@ int decimals_of(double step) {
   return std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
 }
 
-bool sound(double least, double most) {
+bool sound(double min, double max) {
   // Two nearly equal doubles have no representable step between them.
-  return std::isfinite(least) && std::isfinite(most) &&
-         most - least > 1e-12 * std::max({std::abs(least), std::abs(most), 1e-300});
+  return std::isfinite(min) && std::isfinite(max) &&
+         max - min > 1e-12 * std::max({std::abs(min), std::abs(max), 1e-300});
 }
 
 AxisTicks from_to(double first, double last, double step) {
@@ -44,42 +44,42 @@ std::string AxisTicks::text(std::size_t i) const {
   return fmt::format("{:.{}f}", std::abs(value) < 0.5 * kSlack * step ? 0.0 : value, decimals);
 }
 
-AxisTicks ticks_within(double least, double most, std::size_t most_count) {
-  if (!sound(least, most)) return {};
-  double step = round_step((most - least) / static_cast<double>(most_count));
+AxisTicks ticks_within(double min, double max, std::size_t max_count) {
+  if (!sound(min, max)) return {};
+  double step = round_step((max - min) / static_cast<double>(max_count));
   // The first step may give one number too many.
   while (true) {
     const AxisTicks ticks =
-        from_to(std::ceil(least / step - kSlack), std::floor(most / step + kSlack), step);
-    if (ticks.count <= most_count) return ticks;
+        from_to(std::ceil(min / step - kSlack), std::floor(max / step + kSlack), step);
+    if (ticks.count <= max_count) return ticks;
     step = round_step(1.5 * step);
   }
 }
 
-AxisTicks ticks_around(double least, double most, std::size_t most_count) {
-  if (!sound(least, most)) return {};
-  double step = round_step((most - least) / static_cast<double>(most_count - 1));
+AxisTicks ticks_around(double min, double max, std::size_t max_count) {
+  if (!sound(min, max)) return {};
+  double step = round_step((max - min) / static_cast<double>(max_count - 1));
   while (true) {
     const AxisTicks ticks =
-        from_to(std::floor(least / step + kSlack), std::ceil(most / step - kSlack), step);
-    if (ticks.count <= most_count) return ticks;
+        from_to(std::floor(min / step + kSlack), std::ceil(max / step - kSlack), step);
+    if (ticks.count <= max_count) return ticks;
     step = round_step(1.5 * step);
   }
 }
 
-ShownUnit unit_for(Quantity quantity, double most) {
+ShownUnit unit_for(Quantity quantity, double max) {
   switch (quantity) {
     case Quantity::kForce:
-      return most < 0.1 ? ShownUnit{"mN", 1e3} : ShownUnit{"N", 1};
+      return max < 0.1 ? ShownUnit{"mN", 1e3} : ShownUnit{"N", 1};
     case Quantity::kLength:
-      return most < 1e-4 ? ShownUnit{"um", 1e6} : ShownUnit{"mm", 1e3};
+      return max < 1e-4 ? ShownUnit{"um", 1e6} : ShownUnit{"mm", 1e3};
     case Quantity::kSpeed:
-      return most < 1e-4 ? ShownUnit{"um/s", 1e6} : ShownUnit{"mm/s", 1e3};
+      return max < 1e-4 ? ShownUnit{"um/s", 1e6} : ShownUnit{"mm/s", 1e3};
     case Quantity::kTime:
       break;
   }
-  if (most < 1e-2) return {"us", 1e6};
-  return most < 1 ? ShownUnit{"ms", 1e3} : ShownUnit{"s", 1};
+  if (max < 1e-2) return {"us", 1e6};
+  return max < 1 ? ShownUnit{"ms", 1e3} : ShownUnit{"s", 1};
 }
 
 std::string with_unit(Quantity quantity, double value) {

@@ -19,13 +19,13 @@ struct AxisTicks {
   std::string text(std::size_t i) const;
 };
 
-/// Returns the round numbers from `least` to `most`, as many as possible up to `most_count` (>= 2).
+/// Returns the round numbers from `least` to `most`, as many as possible up to `max_count` (>= 2).
 /// Empty if there are no numbers between, or a bound is not finite.
-AxisTicks ticks_within(double least, double most, std::size_t most_count);
+AxisTicks ticks_within(double min, double max, std::size_t max_count);
 
-/// Returns up to `most_count` (>= 3) round numbers whose range includes `least` and `most`, for an
+/// Returns up to `max_count` (>= 3) round numbers whose range includes `least` and `most`, for an
 /// axis that ends at numbers.
-AxisTicks ticks_around(double least, double most, std::size_t most_count);
+AxisTicks ticks_around(double min, double max, std::size_t max_count);
 
 /// A display unit, and how many of them one SI unit is.
 struct ShownUnit {
@@ -38,7 +38,7 @@ enum class Quantity { kForce, kLength, kTime, kSpeed };
 
 /// Returns a readable unit for numbers up to `most` (SI): N or mN; mm or um; s, ms or us;
 /// mm/s or um/s.
-ShownUnit unit_for(Quantity quantity, double most);
+ShownUnit unit_for(Quantity quantity, double max);
 
 /// Returns a value (SI) as text with a suitable unit, three digits: "2.31 N", "840 um".
 std::string with_unit(Quantity quantity, double value);

@@ -82,7 +82,7 @@ void MomentRing::keep(const DrawnMoment& moment) {
   kept.bytes += size_of(kept);
   bytes_ += kept.bytes;
   kept_.push_back(std::move(kept));
-  while (kept_.size() > 1 && (oldest() < time - kSeconds || bytes_ > kBytesMost)) drop_oldest();
+  while (kept_.size() > 1 && (oldest() < time - kSeconds || bytes_ > kBytesMax)) drop_oldest();
 }
 
 std::size_t MomentRing::place_of(double time) const {
@@ -91,7 +91,7 @@ std::size_t MomentRing::place_of(double time) const {
   return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - kept_.begin() - 1));
 }
 
-double MomentRing::beside(double time, int steps) const {
+double MomentRing::time_of_step(double time, int steps) const {
   const auto at = static_cast<std::ptrdiff_t>(place_of(time)) + steps;
   const auto last = static_cast<std::ptrdiff_t>(kept_.size()) - 1;
   return kept_[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, last))].time;

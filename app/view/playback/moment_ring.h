@@ -18,7 +18,7 @@ class MomentRing {
  public:
   static constexpr double kSeconds = 60;     ///< Duration that is kept, in the run's time.
   static constexpr double kStep = 1.0 / 30;  ///< Minimum time between two moments, s. [chosen]
-  static constexpr std::size_t kBytesMost = 64'000'000;  ///< Maximum size of all moments. [chosen]
+  static constexpr std::size_t kBytesMax = 64'000'000;  ///< Maximum size of all moments. [chosen]
   /// Minimum time between two new shapes of an object, s: a shape is a whole mesh. [chosen]
   static constexpr double kShapeStep = 0.5;
 
@@ -33,7 +33,7 @@ class MomentRing {
 
   /// Returns the time (s) of the moment `steps` after the one shown at `time`, clamped to the
   /// oldest and the newest. Precondition: not empty.
-  double beside(double time, int steps) const;
+  double time_of_step(double time, int steps) const;
 
   /// Returns the times of the oldest and the newest moment, s. Precondition: not empty.
   double oldest() const { return kept_.front().time; }

@@ -27,7 +27,7 @@ void PlayHead::go(double time) {
   time_ = std::clamp(time, begin_, end_);
 }
 
-void PlayHead::stand_at(double time) {
+void PlayHead::stop_at(double time) {
   go(time);
   stop();
 }

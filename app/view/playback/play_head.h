@@ -24,7 +24,7 @@ class PlayHead {
   /// moment from now on. A head that plays continues to play.
   void go(double time);
   /// Moves to a time and stops there.
-  void stand_at(double time);
+  void stop_at(double time);
   /// Moves to the moment shown for the current time, without becoming live.
   void settle(double time) { time_ = time; }
   void to_start() { go(begin_); }

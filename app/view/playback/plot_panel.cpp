@@ -109,11 +109,11 @@ std::optional<double> PlotPanel::draw(const Plots& plots, const PlotTime& time, 
   const float width = ImGui::GetContentRegionAvail().x;
   const float spacing = ImGui::GetStyle().ItemSpacing.y;
   const float room = height - (ImGui::GetCursorPosY() - top);
-  const float least = kPlotHeight * ImGui::GetFontSize() + spacing;
+  const float min = kPlotHeight * ImGui::GetFontSize() + spacing;
   const auto wanted = std::count(shown_.begin(), shown_.end(), true) + (periods_ ? 1 : 0);
-  const auto fit = std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(room / least), 1,
+  const auto fit = std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(room / min), 1,
                                               std::max<std::ptrdiff_t>(wanted, 1));
-  const float each = std::max(room / static_cast<float>(fit), least) - spacing;
+  const float each = std::max(room / static_cast<float>(fit), min) - spacing;
   const auto next = [&] {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     return ScreenPart{at.x, at.y, width, each};

@@ -28,7 +28,7 @@ TimeRange zoomed(const TimeRange& range, double at, double factor, const TimeRan
 Plots Plots::of_recording() {
   Plots plots;
   plots.seconds_ = std::numeric_limits<double>::infinity();
-  plots.samples_most_ = std::numeric_limits<std::size_t>::max();
+  plots.samples_max_ = std::numeric_limits<std::size_t>::max();
   return plots;
 }
 
@@ -54,11 +54,11 @@ void Plots::add(const driver::TickRecord& tick) {
   if ((dropped_ + samples_.size()) % kBlock == 0 || blocks_.empty()) blocks_.emplace_back();
   for (std::size_t k = 0; k < kChannels; ++k) {
     Extent& extent = blocks_.back()[k];
-    extent.least = std::min(extent.least, sample.value[k]);
-    extent.most = std::max(extent.most, sample.value[k]);
+    extent.min = std::min(extent.min, sample.value[k]);
+    extent.max = std::max(extent.max, sample.value[k]);
   }
   samples_.push_back(sample);
-  while (samples_.front().time < time - seconds_ || samples_.size() > samples_most_) {
+  while (samples_.front().time < time - seconds_ || samples_.size() > samples_max_) {
     samples_.pop_front();
     if (++dropped_ % kBlock == 0) blocks_.pop_front();
   }
@@ -95,15 +95,15 @@ std::optional<double> Plots::value_at(Channel channel, double time) const {
 Plots::Extent Plots::extent(Channel channel, std::size_t from, std::size_t to) const {
   const auto k = static_cast<std::size_t>(channel);
   Extent extent;
-  const auto add = [&](float least, float most) {
-    extent.least = std::min(extent.least, least);
-    extent.most = std::max(extent.most, most);
+  const auto add = [&](float min, float max) {
+    extent.min = std::min(extent.min, min);
+    extent.max = std::max(extent.max, max);
   };
   const std::uint64_t first_block = dropped_ / kBlock;
   for (std::uint64_t i = dropped_ + from; i < dropped_ + to;) {
     if (i % kBlock == 0 && i + kBlock <= dropped_ + to) {
       const Extent& whole = blocks_[static_cast<std::size_t>(i / kBlock - first_block)][k];
-      add(whole.least, whole.most);
+      add(whole.min, whole.max);
       i += kBlock;
     } else {
       const float value = samples_[static_cast<std::size_t>(i - dropped_)].value[k];

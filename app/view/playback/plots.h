@@ -52,7 +52,7 @@ class Plots {
   static constexpr double kSeconds = 60;      ///< Kept duration of a run, as in MomentRing.
   static constexpr double kShownSeconds = 8;  ///< Duration shown by default.
   /// Maximum number of ticks kept of a run: a minute at 8 kHz, 23 MB. [chosen]
-  static constexpr std::size_t kSamplesMost = 480'000;
+  static constexpr std::size_t kSamplesMax = 480'000;
 
   /// Keeps the last minute.
   Plots() = default;
@@ -73,9 +73,9 @@ class Plots {
 
   /// The smallest and the largest value of a channel, SI.
   struct Extent {
-    float least = std::numeric_limits<float>::infinity();
-    float most = -std::numeric_limits<float>::infinity();
-    bool empty() const { return most < least; }
+    float min = std::numeric_limits<float>::infinity();
+    float max = -std::numeric_limits<float>::infinity();
+    bool empty() const { return max < min; }
   };
   /// Returns the extent within a range of time, including its ends.
   Extent extent(Channel channel, const TimeRange& range) const;
@@ -116,7 +116,7 @@ class Plots {
                  const AxisTicks& axis, double per_si) const;
 
   double seconds_ = kSeconds;
-  std::size_t samples_most_ = kSamplesMost;
+  std::size_t samples_max_ = kSamplesMax;
   std::uint64_t dropped_ = 0;   // number of samples discarded before the first
   std::deque<Sample> samples_;  // sample i has number dropped_ + i and is in block number / kBlock
   std::deque<Block> blocks_;    // blocks_[0] is the block of samples_[0]

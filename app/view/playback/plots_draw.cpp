@@ -18,8 +18,8 @@ struct ChannelLook {
   const char* name;
   Quantity quantity;
   const Colour& colour;
-  bool from_zero;     // its axis begins at zero
-  double most_least;  // minimum upper end of its axis, SI; chosen
+  bool from_zero;    // its axis begins at zero
+  double min_range;  // minimum upper end of its axis, SI; chosen
 };
 
 const ChannelLook& look_of(Channel channel) {
@@ -160,10 +160,10 @@ void Plots::draw_line(ImDrawList& list, const ScreenPart& inner, Channel channel
       from = to;
       if (spans.empty()) continue;
       const float x = inner.x + static_cast<float>(i) + 0.5F;
-      line.push_back({x, y(spans.least)});
-      if (spans.most > spans.least) line.push_back({x, y(spans.most)});
+      line.push_back({x, y(spans.min)});
+      if (spans.max > spans.min) line.push_back({x, y(spans.max)});
       if (look.from_zero) {
-        list.AddLine({x, inner.y + inner.height}, {x, y(spans.most)},
+        list.AddLine({x, inner.y + inner.height}, {x, y(spans.max)},
                      packed(shown(look.colour), 0.10F));
       }
     }
@@ -186,26 +186,27 @@ void Plots::draw(ImDrawList& list, const ScreenPart& part, Channel channel, cons
   const ScreenPart inner = lines_of(part, marks.times);
   Extent extent = this->extent(channel, range);
   if (extent.empty()) extent = {0, 0};
-  double least = look.from_zero ? 0 : static_cast<double>(extent.least);
-  double most = std::max(static_cast<double>(extent.most), look.from_zero ? look.most_least : -1e9);
-  if (look.from_zero && !(extent.most > 0)) most = 100 * look.most_least;  // no data yet
-  if (most - least < look.most_least) {
-    const double middle = 0.5 * (least + most);
-    least = look.from_zero ? 0 : middle - 0.5 * look.most_least;
-    most = least + look.most_least;
+  double min = look.from_zero ? 0 : static_cast<double>(extent.min);
+  double max = std::max(static_cast<double>(extent.max), look.from_zero ? look.min_range : -1e9);
+  if (look.from_zero && !(extent.max > 0)) max = 100 * look.min_range;  // no data yet
+  if (max - min < look.min_range) {
+    const double middle = 0.5 * (min + max);
+    min = look.from_zero ? 0 : middle - 0.5 * look.min_range;
+    max = min + look.min_range;
   }
-  const ShownUnit unit = unit_for(look.quantity, std::max(std::abs(least), std::abs(most)));
+  const ShownUnit unit = unit_for(look.quantity, std::max(std::abs(min), std::abs(max)));
   const auto room =
       static_cast<std::size_t>(std::clamp(inner.height / (1.5F * small_size()), 3.0F, 6.0F));
-  const AxisTicks axis = ticks_around(least * unit.per_si, most * unit.per_si, room);
+  const AxisTicks axis = ticks_around(min * unit.per_si, max * unit.per_si, room);
   draw_frame(list, inner);
   draw_left_axis(list, inner, axis);
   draw_time_axis(list, inner, range, marks.times);
   if (axis.count > 1) draw_line(list, inner, channel, range, axis, unit.per_si);
   if (marks.looked) draw_upright(list, inner, range, *marks.looked, kProxyColour, 2);
-  const double told = marks.cursor.value_or(marks.looked.value_or(std::min(range.end, kept().end)));
+  const double shown_time =
+      marks.cursor.value_or(marks.looked.value_or(std::min(range.end, kept().end)));
   if (marks.cursor) draw_upright(list, inner, range, *marks.cursor, text_ink(), 1);
-  const auto value = value_at(channel, told);
+  const auto value = value_at(channel, shown_time);
   std::string words;
   if (value)
     words = *value == 0 ? fmt::format("0 {}", unit.name) : with_unit(look.quantity, *value);
@@ -245,11 +246,11 @@ void Plots::draw_periods(ImDrawList& list, const ScreenPart& part, const TimeRan
                                 : 0.5F,
                 axis.text(i));
   }
-  const int most = std::max(1, *std::max_element(count.begin(), count.end()));
+  const int max = std::max(1, *std::max_element(count.begin(), count.end()));
   for (std::size_t i = 0; i < kBins; ++i) {
     if (count[i] == 0) continue;
     // Logarithmic: one late tick in ten thousand must be visible.
-    const double share = (std::log(count[i]) + 1) / (std::log(most) + 1);
+    const double share = (std::log(count[i]) + 1) / (std::log(max) + 1);
     const float width = inner.width / kBins;
     const float x = inner.x + width * static_cast<float>(i);
     const float top = inner.y + inner.height * static_cast<float>(1 - share);

@@ -25,7 +25,9 @@ class RecordingPlayer final : public TouchSource {
   const std::string& notice() const override { return notice_; }
   std::string name() const override { return name_; }
   PlayHead& head() override { return head_; }
-  double beside(int steps) const override { return recording_.beside(head_.time(), steps); }
+  double time_of_step(int steps) const override {
+    return recording_.time_of_step(head_.time(), steps);
+  }
   std::string kept() const override { return ""; }
   const std::vector<std::string>& about() const override { return recording_.about(); }
 

@@ -74,11 +74,11 @@ driver::Result<void> RecordingView::touch_again() {
   shared_.period_ns = in_ns(1 / rate_);
   drawn_ = drawn_scene_of(shared_);
   for (const driver::TickRecord& tick : ticks()) plots_.add(tick);
-  tell(*replays);
+  describe(*replays);
   return {};
 }
 
-void RecordingView::tell(std::span<const session::Replay> replays) {
+void RecordingView::describe(std::span<const session::Replay> replays) {
   const session::RecordingInfo& info = arms_.front().info;
   about_.push_back(fmt::format("Recorded on {} ({}), {:g} Hz, {} time; {} ticks.", info.arm,
                                info.device, info.rate, info.clock == "virtual" ? "virtual" : "real",
@@ -104,7 +104,7 @@ void RecordingView::tell(std::span<const session::Replay> replays) {
     about_.push_back(fmt::format("What is shaped for good is shown every {:g} s.", film_.step()));
   }
   const auto frames = film_.dents() == nullptr ? 0 : film_.dents()->frames().size();
-  if (frames > session::DentTrace::kFramesMost / 2) {
+  if (frames > session::DentTrace::kFramesMax / 2) {
     about_.push_back("Only some of the dents are stored.");
   }
 }
@@ -114,7 +114,7 @@ TimeRange RecordingView::time() const {
           1e-9 * static_cast<double>(ticks().back().time_ns)};
 }
 
-double RecordingView::beside(double time, int steps) const {
+double RecordingView::time_of_step(double time, int steps) const {
   const auto at = static_cast<std::ptrdiff_t>(tick_at(arms_.front().ticks, in_ns(time))) + steps;
   const auto last = static_cast<std::ptrdiff_t>(ticks().size()) - 1;
   const auto place = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, last));

@@ -13,7 +13,7 @@
 #include "thimble/session/recording.h"
 #include "view/drawn_scene.h"
 #include "view/playback/plots.h"
-#include "view/playback/shape_film.h"
+#include "view/playback/shape_animation.h"
 
 namespace thimble::view {
 
@@ -36,7 +36,7 @@ class RecordingView {
   TimeRange time() const;
   /// Returns the time (s) of the tick `steps` after the one at a time, clamped to the first and the
   /// last.
-  double beside(double time, int steps) const;
+  double time_of_step(double time, int steps) const;
   const Plots& plots() const { return plots_; }
   /// Returns a description of the recording and what it lacks, a sentence each.
   const std::vector<std::string>& about() const { return about_; }
@@ -48,7 +48,7 @@ class RecordingView {
  private:
   RecordingView() = default;
   driver::Result<void> touch_again();
-  void tell(std::span<const session::Replay> replays);
+  void describe(std::span<const session::Replay> replays);
   void show_bodies(std::int64_t time_ns, DrawnMoment& moment) const;
   void show_dent(std::int64_t time_ns, DrawnMoment& moment) const;
 
@@ -56,7 +56,7 @@ class RecordingView {
   double rate_ = 1000;                    // Hz
   session::SharedScene shared_;
   DrawnScene drawn_;
-  ShapeFilm film_;
+  ShapeAnimation film_;
   Plots plots_ = Plots::of_recording();
   std::vector<std::string> about_;
 };

@@ -79,7 +79,7 @@ void draw_buttons(TouchSource& source) {
     head.to_start();
   }
   if (sign_button("##back", Sign::kBack, run ? "one frame back (left)" : "one tick back (left)")) {
-    head.stand_at(source.beside(-1));
+    head.stop_at(source.time_of_step(-1));
   }
   const Sign sign = head.plays() || head.live() ? Sign::kStop : Sign::kPlay;
   const char* about = head.live() ? "hold this moment; the run continues"
@@ -90,7 +90,7 @@ void draw_buttons(TouchSource& source) {
   }
   if (sign_button("##on", Sign::kForward,
                   run ? "one frame forward (right)" : "one tick forward (right)")) {
-    head.stand_at(source.beside(1));
+    head.stop_at(source.time_of_step(1));
   }
   if (sign_button("##end", Sign::kEnd, run ? "now (End)" : "end (End)")) head.to_end();
 }
@@ -138,7 +138,7 @@ void draw_bar(const ScreenPart& bar, TouchSource& source) {
     const double width = span / columns;
     const double begin = head.begin() + width * i;
     const Plots::Extent depth = plots.extent(Channel::kDepth, {begin, begin + width});
-    if (depth.empty() || !(depth.most > 0)) continue;
+    if (depth.empty() || !(depth.max > 0)) continue;
     const float x = bar.x + static_cast<float>(i);
     list.AddRectFilled({x, middle - half}, {x + 1, middle + half}, packed(kDepthColour, 0.45F));
   }
@@ -170,7 +170,8 @@ bool TimeLine::take_key(int key, TouchSource& source, bool arrows) {
   if (!arrows && (key == GLFW_KEY_LEFT || key == GLFW_KEY_RIGHT)) return false;
   PlayHead& head = source.head();
   const auto go = [&](int steps) {
-    head.stand_at(ImGui::GetIO().KeyShift ? head.time() + steps * kBigStep : source.beside(steps));
+    head.stop_at(ImGui::GetIO().KeyShift ? head.time() + steps * kBigStep
+                                         : source.time_of_step(steps));
   };
   switch (key) {
     case GLFW_KEY_LEFT:

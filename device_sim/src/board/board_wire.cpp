@@ -71,12 +71,12 @@ std::size_t encode_report(const BoardReport& report, const FirmwareSettings& set
     hfab::write_input(fine_hfab_report(report), hfab_bytes);
     return hfab_bytes.size();
   }
-  if (settings.speaks == ArmKind::kWoody) {
+  if (settings.protocol == ArmKind::kWoody) {
     const auto words = woody::encode_input(woody_report(report));
     std::copy(words.begin(), words.end(), bytes.begin());
     return words.size();
   }
-  if (settings.speaks == ArmKind::kHfabLine) {
+  if (settings.protocol == ArmKind::kHfabLine) {
     return hfab::encode_arm_line(hfab_line(report, settings.line_model),
                                  bytes.first<hfab::kLineCapacity>());
   }
@@ -86,13 +86,13 @@ std::size_t encode_report(const BoardReport& report, const FirmwareSettings& set
 
 bool decode_message(std::span<const std::byte> bytes, const FirmwareSettings& settings,
                     BoardMessage& message) noexcept {
-  if (!settings.ideal_encoders && settings.speaks == ArmKind::kWoody) {
+  if (!settings.ideal_encoders && settings.protocol == ArmKind::kWoody) {
     const auto output = woody::decode_output(bytes);
     if (!output) return false;
     std::copy_n(output->current_mA.begin(), 3, message.current_mA.begin());
     return true;
   }
-  if (!settings.ideal_encoders && settings.speaks == ArmKind::kHfabLine) {
+  if (!settings.ideal_encoders && settings.protocol == ArmKind::kHfabLine) {
     const auto line = hfab::decode_host_line(bytes);
     if (!line) return false;
     message.current_mA = line->current_mA;

@@ -40,8 +40,8 @@ driver::Result<Firmware> Firmware::make(const driver::ArmModel& real,
   driver::ArmModel model = settings.ideal_encoders ? with_fine_counts(real, kFine) : real;
   if (settings.ideal_encoders) model.gimbal.reset();
   if (auto wired = settings.wiring.check(); !wired) return wired.error();
-  if (settings.speaks == driver::ArmKind::kFalcon ||
-      settings.speaks == driver::ArmKind::kUnsupported) {
+  if (settings.protocol == driver::ArmKind::kFalcon ||
+      settings.protocol == driver::ArmKind::kUnsupported) {
     return driver::Error{
         "The simulated firmware supports only wires on which a board sends by itself: 14-byte "
         "reports, 8-byte reports or text lines."};
@@ -76,7 +76,7 @@ Firmware::Firmware(const driver::ArmModel& model, const FirmwareSettings& settin
     counts_per_radian_[joint] = encoder.sign / model.step(static_cast<std::size_t>(joint));
     home_counts_[joint] = static_cast<double>(encoder.home_counts);
   }
-  counts_per_radian_most_ = counts_per_radian_.cwiseAbs().maxCoeff();
+  max_counts_per_radian_ = counts_per_radian_.cwiseAbs().maxCoeff();
   countable_ = countable();
 }
 
@@ -91,7 +91,7 @@ void Firmware::miss_edges(const Eigen::Vector3d& q, SplitMix& chance) noexcept {
     const std::int64_t passed = looked_ ? now - edges_[i] : 0;
     edges_[i] = now;
     const double step = passed > 0 ? 1 : -1;
-    for (std::int64_t edge = std::min(std::abs(passed), kEdgesMost); edge > 0; --edge) {
+    for (std::int64_t edge = std::min(std::abs(passed), kEdgesMax); edge > 0; --edge) {
       if (!(chance.uniform() < settings_.missed_edges)) continue;
       home_counts_[k] += step;
       ++counters_.missed_edges;
@@ -114,7 +114,7 @@ BoardBytes Firmware::sample(const Eigen::Vector3d& q, const Eigen::Vector3d& gim
 bool Firmware::sample_about(const Eigen::Vector3d& q, double error, const Eigen::Vector3d& gimbal,
                             std::uint16_t number, BoardBytes& bytes) const noexcept {
   const Eigen::Vector3d counts = counts_at(q) + preset_counts_;
-  const double counts_error = error * counts_per_radian_most_;
+  const double counts_error = error * max_counts_per_radian_;
   const bool sure = countable_ && rounds_surely(counts[0], counts_error) &&
                     rounds_surely(counts[1], counts_error) &&
                     rounds_surely(counts[2], counts_error);
@@ -187,8 +187,8 @@ void Firmware::set_counters(const BoardCounters& counters, const Eigen::Vector3d
 }
 
 bool Firmware::countable() const noexcept {
-  const double gain_most = settings_.wiring.encoder_gain.cwiseAbs().maxCoeff();
-  return !misses_edges() && gain_most <= 1 && home_counts_.cwiseAbs().maxCoeff() < kCountable &&
+  const double max_gain = settings_.wiring.encoder_gain.cwiseAbs().maxCoeff();
+  return !misses_edges() && max_gain <= 1 && home_counts_.cwiseAbs().maxCoeff() < kCountable &&
          preset_counts_.cwiseAbs().maxCoeff() < kCountable;
 }
 

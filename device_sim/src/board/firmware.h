@@ -57,11 +57,11 @@ class Firmware {
   bool misses_edges() const noexcept { return settings_.missed_edges > 0; }
   /// Makes the counters miss some of the edges that the encoders passed since the last call, at
   /// these true joint angles (rad). Each is missed with the probability
-  /// FirmwareSettings::missed_edges. At most kEdgesMost edges per encoder are processed, which is
+  /// FirmwareSettings::missed_edges. At most kEdgesMax edges per encoder are processed, which is
   /// more than an arm passes in a period.
   void miss_edges(const Eigen::Vector3d& q, SplitMix& chance) noexcept;
   /// Max. number of edges of an encoder that `miss_edges` processes.
-  static constexpr std::int64_t kEdgesMost = 100'000;
+  static constexpr std::int64_t kEdgesMax = 100'000;
 
   /// Takes a message that arrived at `time_ns`. If it is a preset, returns its counters; the caller
   /// must then call `preset` at once.
@@ -107,7 +107,7 @@ class Firmware {
   std::optional<driver::Gimbal> gimbal_;
   Eigen::Vector3d counts_per_radian_;  // with the encoder's sign
   Eigen::Vector3d home_counts_;        // includes the edges that the counters have missed
-  double counts_per_radian_most_;      // max. over the joints
+  double max_counts_per_radian_;       // max. over the joints
   bool countable_;  // gains, home and presets leave enough digits for exact counts
   FirmwareCounters counters_;
   // Added to the counters by presets.

@@ -42,9 +42,9 @@ driver::Result<DriveTrain> DriveTrain::make(const DriveTrainSettings& settings,
   if (!(settings.current_lag >= 0 && settings.current_lag < HUGE_VAL)) {
     return wrong("current_lag must be finite and not negative (s)");
   }
-  const bool wavy = !settings.cogging.isZero(0) || !settings.ripple.isZero(0);
+  const bool has_ripple = !settings.cogging.isZero(0) || !settings.ripple.isZero(0);
   if (!(settings.periods_per_turn >= 0 && settings.periods_per_turn < HUGE_VAL) ||
-      (wavy && settings.periods_per_turn == 0)) {
+      (has_ripple && settings.periods_per_turn == 0)) {
     return wrong("periods_per_turn must be finite, and above zero if cogging or ripple is set");
   }
   if (!settings.cogging_phase.allFinite() || !settings.ripple_phase.allFinite()) {
@@ -81,7 +81,7 @@ DriveTrain::DriveTrain(const DriveTrainSettings& settings,
     : settings_(settings),
       heat_(heat),
       current_max_(current_max),
-      wavy_(!settings.cogging.isZero(0) || !settings.ripple.isZero(0)) {
+      has_ripple_(!settings.cogging.isZero(0) || !settings.ripple.isZero(0)) {
   for (int i = 0; i < 3; ++i) {
     const driver::MotorDrive& drive = drives[static_cast<std::size_t>(i)];
     torque_per_ampere_[i] = drive.sign * drive.ratio * drive.torque_constant;
@@ -116,7 +116,7 @@ Eigen::Vector3d DriveTrain::torque(const Eigen::Vector3d& amperes,
                                    const Eigen::Vector3d& q_rotor) const noexcept {
   Eigen::Vector3d tau = torque_per_ampere_.cwiseProduct(amperes);
   if (heat_) tau = tau.cwiseProduct(heat_->torque_share());
-  if (!wavy_) return tau;
+  if (!has_ripple_) return tau;
   for (int i = 0; i < 3; ++i) {
     const double turned = settings_.periods_per_turn * ratio_[i] * q_rotor[i];
     const double poles = math::sin(turned + settings_.cogging_phase[i]);

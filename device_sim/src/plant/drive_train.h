@@ -66,7 +66,7 @@ class THIMBLE_EXPORT DriveTrain {
   Eigen::Vector3d torque_per_ampere_;  // at the joints, N m/A
   Eigen::Vector3d ratio_;              // motor turns per joint turn
   double current_max_;                 // A
-  bool wavy_;                          // has cogging or ripple
+  bool has_ripple_;                    // has cogging or ripple
   Eigen::Vector3d asked_{0, 0, 0};     // A
   Eigen::Vector3d amperes_{0, 0, 0};   // A
 };

@@ -13,9 +13,9 @@ namespace {
 /// Solves for the axes that slide as in `guess` with the others at rest, to rounding. Returns the
 /// guess itself if they would then slide the other way.
 Eigen::Vector3d sliding_with(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& momentum,
-                             double most, const Eigen::Vector3d& guess) noexcept {
+                             double bound, const Eigen::Vector3d& guess) noexcept {
   Eigen::Matrix3d of_sliding = inertia;
-  Eigen::Vector3d right = momentum - most * guess.cwiseSign();
+  Eigen::Vector3d right = momentum - bound * guess.cwiseSign();
   for (int i = 0; i < 3; ++i) {
     if (guess[i] != 0) continue;
     of_sliding.row(i).setZero();
@@ -31,12 +31,12 @@ Eigen::Vector3d sliding_with(const Eigen::Matrix3d& inertia, const Eigen::Vector
   return v;
 }
 
-Eigen::Vector3d velocity_beside_axes(const Eigen::Matrix3d& inertia,
-                                     const Eigen::Vector3d& momentum, double most,
-                                     const Eigen::Vector3d& v_before) noexcept {
-  if (most == 0) return inertia.inverse() * momentum;
+Eigen::Vector3d velocity_after_tip_friction(const Eigen::Matrix3d& inertia,
+                                            const Eigen::Vector3d& momentum, double bound,
+                                            const Eigen::Vector3d& v_before) noexcept {
+  if (bound == 0) return inertia.inverse() * momentum;
   if ((v_before.array() != 0).all()) {
-    const Eigen::Vector3d sliding = inertia.inverse() * (momentum - most * v_before.cwiseSign());
+    const Eigen::Vector3d sliding = inertia.inverse() * (momentum - bound * v_before.cwiseSign());
     if ((sliding.array() * v_before.array() > 0).all()) return sliding;
   }
   // It ends after one round if the tip stays at rest, and after a few if masses differ by less than
@@ -49,33 +49,33 @@ Eigen::Vector3d velocity_beside_axes(const Eigen::Matrix3d& inertia,
     for (int i = 0; i < 3; ++i) {
       const double push = momentum[i] - inertia.row(i).dot(v) + inertia(i, i) * v[i];
       const double moved =
-          std::abs(push) > most ? (push - std::copysign(most, push)) / inertia(i, i) : 0;
+          std::abs(push) > bound ? (push - std::copysign(bound, push)) / inertia(i, i) : 0;
       change = std::max(change, std::abs(moved - v[i]));
       v[i] = moved;
       largest = std::max(largest, std::abs(moved));
     }
     if (!(change > kEnough * largest)) break;
   }
-  return sliding_with(inertia, momentum, most, v);
+  return sliding_with(inertia, momentum, bound, v);
 }
 
 /// One line along which friction acts.
 struct Line {
   Eigen::Vector3d along{0, 0, 0};
   Eigen::Vector3d yields{0, 0, 0};  // velocity change by a unit impulse along the line
-  double most = 0, impulse = 0;
-  bool holds() const { return std::abs(impulse) < most; }
-  bool slides() const { return most > 0 && !holds(); }
+  double bound = 0, impulse = 0;
+  bool holds() const { return std::abs(impulse) < bound; }
+  bool slides() const { return bound > 0 && !holds(); }
 };
 using Lines = std::array<Line, 6>;
 
 /// Relaxes each line in turn: its impulse reduces the motion `v` along it as far as its limit
 /// allows.
-void take_turns(Lines& lines, Eigen::Vector3d& v) noexcept {
+void relax_lines(Lines& lines, Eigen::Vector3d& v) noexcept {
   for (Line& line : lines) {
-    if (!(line.most > 0)) continue;
+    if (!(line.bound > 0)) continue;
     const double wanted = line.impulse + line.along.dot(v) / line.along.dot(line.yields);
-    const double impulse = std::clamp(wanted, -line.most, line.most);
+    const double impulse = std::clamp(wanted, -line.bound, line.bound);
     v -= (impulse - line.impulse) * line.yields;
     line.impulse = impulse;
   }
@@ -114,16 +114,16 @@ Wrong hold(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& momentum, Line
     if (!line.slides()) continue;
     // As the impulse that would hold the line, so that both kinds of violation are comparable.
     const double back = -std::copysign(1.0, line.impulse) * line.along.dot(v) /
-                        line.along.dot(line.yields) / line.most;
+                        line.along.dot(line.yields) / line.bound;
     if (back > worst.by) worst = {.line = &line, .impulse = 0, .by = back};
   }
   if (along.cols() == 0) return worst;
   const auto impulse = along.colPivHouseholderQr().solve(right - inertia * v).eval();
   for (Eigen::Index k = 0; k < along.cols(); ++k) {
     Line* const line = held[static_cast<std::size_t>(k)];
-    const double over = std::abs(impulse[k]) / line->most - 1;
+    const double over = std::abs(impulse[k]) / line->bound - 1;
     if (over > worst.by) {
-      worst = {.line = line, .impulse = std::copysign(line->most, impulse[k]), .by = over};
+      worst = {.line = line, .impulse = std::copysign(line->bound, impulse[k]), .by = over};
     }
   }
   return worst;
@@ -143,29 +143,30 @@ bool hold_exactly(const Eigen::Matrix3d& inertia, const Eigen::Vector3d& momentu
   return false;
 }
 
-Eigen::Vector3d velocity_beside_joints(const Eigen::Matrix3d& inertia,
-                                       const Eigen::Vector3d& momentum, const DryFriction& friction,
-                                       const Eigen::Vector3d& v_before) noexcept {
+Eigen::Vector3d velocity_after_joint_friction(const Eigen::Matrix3d& inertia,
+                                              const Eigen::Vector3d& momentum,
+                                              const DryFriction& friction,
+                                              const Eigen::Vector3d& v_before) noexcept {
   constexpr int kRounds = 1000;
   const Eigen::Matrix3d inverse = inertia.inverse();
   Lines lines;
   Eigen::Vector3d v = inverse * momentum;
   for (int i = 0; i < 3; ++i) {
-    lines[static_cast<std::size_t>(i)] = {.along = Eigen::Vector3d::Unit(i), .most = friction.tip};
+    lines[static_cast<std::size_t>(i)] = {.along = Eigen::Vector3d::Unit(i), .bound = friction.tip};
     lines[static_cast<std::size_t>(i + 3)] = {.along = friction.G.row(i).transpose(),
-                                              .most = friction.joints[i]};
+                                              .bound = friction.joints[i]};
   }
   for (Line& line : lines) {
-    if (!(line.most > 0)) continue;
+    if (!(line.bound > 0)) continue;
     line.yields = inverse * line.along;
     const double before = line.along.dot(v_before);
-    line.impulse = before > 0 ? line.most : before < 0 ? -line.most : 0;
+    line.impulse = before > 0 ? line.bound : before < 0 ? -line.bound : 0;
     v -= line.impulse * line.yields;
   }
   Eigen::Vector3d exact;
   for (int round = 0; round < kRounds; ++round) {
     if (hold_exactly(inertia, momentum, lines, exact)) return exact;
-    take_turns(lines, v);
+    relax_lines(lines, v);
   }
   return v;
 }
@@ -177,9 +178,9 @@ Eigen::Vector3d velocity_after_friction(const Eigen::Matrix3d& inertia,
                                         const DryFriction& friction,
                                         const Eigen::Vector3d& v_before) noexcept {
   if (friction.joints.isZero(0)) {
-    return velocity_beside_axes(inertia, momentum, friction.tip, v_before);
+    return velocity_after_tip_friction(inertia, momentum, friction.tip, v_before);
   }
-  return velocity_beside_joints(inertia, momentum, friction, v_before);
+  return velocity_after_joint_friction(inertia, momentum, friction, v_before);
 }
 
 }  // namespace thimble::device_sim

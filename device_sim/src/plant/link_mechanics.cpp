@@ -10,7 +10,7 @@ namespace {
 
 /// The min. inertia about the yaw axis over all sines of B and C: on an edge of their square, or in
 /// its middle.
-double least_about_yaw(const LinkSettings& links) {
+double min_inertia_about_yaw(const LinkSettings& links) {
   const auto about = [&](double x, double y) {
     return links.inertia[0] + links.yaw_b * x * x + links.yaw_c * y * y +
            2 * links.coupling * x * y;
@@ -40,7 +40,7 @@ driver::Result<void> check_links(const LinkSettings& links) {
         "the square of coupling must be at most inertia B times inertia C."};
   }
   const double most = links.inertia[0] + std::abs(links.yaw_b) + std::abs(links.yaw_c);
-  if (!(least_about_yaw(links) >= -kRounding * most)) {
+  if (!(min_inertia_about_yaw(links) >= -kRounding * most)) {
     return driver::Error{
         "The simulated arm's links are physically impossible: with these yaw_b, yaw_c and coupling "
         "the inertia about the yaw axis is negative in some pose."};

@@ -9,7 +9,7 @@
 namespace thimble::device_sim {
 namespace {
 
-constexpr double kRiseMost = MotorHeatSettings::kRiseMost;
+constexpr double kRiseMax = MotorHeatSettings::kRiseMax;
 constexpr double kMapEvery = 1e-3;  // s; a winding's time constant is thousands of it
 
 bool are_positive(const Eigen::Vector3d& values) {
@@ -22,7 +22,7 @@ driver::Result<MotorHeat> MotorHeat::make(const MotorHeatSettings& settings) {
   const auto wrong = [](const char* what) {
     return driver::Error{std::string("The heat of the simulated arm's motors: ") + what + "."};
   };
-  if (!(settings.rise > 0 && settings.rise <= kRiseMost)) {
+  if (!(settings.rise > 0 && settings.rise <= kRiseMax)) {
     return wrong("rise must be above zero and at most 1000 (K)");
   }
   if (!are_positive(settings.continuous_current) || !are_positive(settings.time_constant)) {
@@ -35,7 +35,7 @@ driver::Result<MotorHeat> MotorHeat::make(const MotorHeatSettings& settings) {
     return wrong("torque must be from -0.1 to 0 (1/K)");
   }
   if (!(settings.at_start.allFinite() && (settings.at_start.array() >= 0).all() &&
-        (settings.at_start.array() <= kRiseMost).all())) {
+        (settings.at_start.array() <= kRiseMax).all())) {
     return wrong("at_start must be from 0 to 1000 (K)");
   }
   return MotorHeat(settings);
@@ -63,7 +63,7 @@ void MotorHeat::warm() noexcept {
     const double x = -rate * time_;
     const double held = x != 0 ? time_ * math::expm1(x) / x : time_;
     rise_[i] += (load * share / tau - rate * rise_[i]) * held;
-    rise_[i] = std::clamp(rise_[i], 0.0, kRiseMost);
+    rise_[i] = std::clamp(rise_[i], 0.0, kRiseMax);
   }
   torque_share_ = (1 + settings_.torque * rise_.array()).max(0);
   squares_.setZero();

@@ -18,7 +18,7 @@ namespace thimble::device_sim {
 ///
 /// which is linear in T while the current is held. It is advanced by its exact map, once per
 /// millisecond, with the mean of the current's square. From (I / I_c)^2 = (1 + a T_c) / (a T_c) on,
-/// T has no limit; it is clamped at MotorHeatSettings::kRiseMost. All functions but `make` are
+/// T has no limit; it is clamped at MotorHeatSettings::kRiseMax. All functions but `make` are
 /// Real-time: safe.
 class MotorHeat {
  public:

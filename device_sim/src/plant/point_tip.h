@@ -27,7 +27,7 @@ class THIMBLE_EXPORT PointTip {
                                        const Eigen::Vector3d& p_BT) {
     const auto dynamics = AxisDynamics::make(settings.plant, settings.hand);
     if (!dynamics) return dynamics.error();
-    if (settings.drive_train.joints_rub()) {
+    if (settings.drive_train.has_joint_friction()) {
       return driver::Error{"Friction of the joints requires a tip model with joints (LinkedTip)."};
     }
     return PointTip(*dynamics, p_BT);

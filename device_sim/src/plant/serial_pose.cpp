@@ -56,10 +56,10 @@ bool SerialPose::angles_near(const SerialPose& from, const Eigen::Vector3d& q_fr
   const Eigen::Vector3d sin_turned(sin_a_ * from.cos_a_ - cos_a_ * from.sin_a_,
                                    sin_b_ * from.cos_b_ - cos_b_ * from.sin_b_,
                                    sin_c_ * from.cos_c_ - cos_c_ * from.sin_c_);
-  const double cos_least = std::min({cos_a_ * from.cos_a_ + sin_a_ * from.sin_a_,
-                                     cos_b_ * from.cos_b_ + sin_b_ * from.sin_b_,
-                                     cos_c_ * from.cos_c_ + sin_c_ * from.sin_c_});
-  if (!(cos_least > 0)) return false;
+  const double min_cos = std::min({cos_a_ * from.cos_a_ + sin_a_ * from.sin_a_,
+                                   cos_b_ * from.cos_b_ + sin_b_ * from.sin_b_,
+                                   cos_c_ * from.cos_c_ + sin_c_ * from.sin_c_});
+  if (!(min_cos > 0)) return false;
   constexpr double kNear = 0.05;
   // Half a turn less the series' max. contribution: beyond, the arc tangent changes its sign.
   constexpr double kHalfTurn = 3.14;

@@ -92,7 +92,7 @@ SimulatedArmSettings with_arm(SimulatedArmSettings board, const ShelfArm& arm) {
   return board;
 }
 
-driver::Error other_build(std::string_view name) {
+driver::Error wrong_geometry(std::string_view name) {
   return driver::Error{"The board '" + std::string(name) +
                        "' does not match the geometry of the arm file."};
 }
@@ -118,7 +118,8 @@ driver::Result<std::unique_ptr<UsbArm>> hid_arm(OnBoard what,
                                                 const driver::JointModel<Geometry>& model,
                                                 const ShelfOptions& options) {
   if (options.arm && !std::holds_alternative<Geometry>(options.arm->model.geometry)) {
-    return other_build(what.board.layout == HidLayout::kWoodenHaptics ? "woodenhaptics" : "polhem");
+    return wrong_geometry(what.board.layout == HidLayout::kWoodenHaptics ? "woodenhaptics"
+                                                                         : "polhem");
   }
   return plugged(HidArm::make(what.board, std::move(what.description),
                               options.arm ? driver::model_as<Geometry>(options.arm->model) : model,
@@ -129,7 +130,7 @@ driver::Result<std::unique_ptr<UsbArm>> hid_arm(OnBoard what,
 
 driver::Result<std::unique_ptr<UsbArm>> falcon_arm(const ShelfOptions& options) {
   if (options.arm && !std::holds_alternative<driver::DeltaArm>(options.arm->model.geometry)) {
-    return other_build("falcon");
+    return wrong_geometry("falcon");
   }
   const auto model = options.arm ? driver::model_as<driver::DeltaArm>(options.arm->model)
                                  : driver::falcon::falcon_model();

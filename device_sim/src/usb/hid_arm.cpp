@@ -23,8 +23,8 @@ enum HidRequest : std::uint8_t {
 
 /// Sets the protocol of the board, and encoders that the board can have.
 SimulatedArmSettings on_board(SimulatedArmSettings settings, const HidBoard& board) {
-  settings.firmware.speaks = board.layout == HidLayout::kWoodenHaptics ? driver::ArmKind::kWoody
-                                                                       : driver::ArmKind::kPolhem;
+  settings.firmware.protocol = board.layout == HidLayout::kWoodenHaptics ? driver::ArmKind::kWoody
+                                                                         : driver::ArmKind::kPolhem;
   settings.firmware.ideal_encoders = false;
   return settings;
 }
@@ -59,7 +59,7 @@ HidArm::HidArm(const HidBoard& board, UsbDescription description, const driver::
       report_age_ns_(settings.wire.delay_in_ns),
       arm_(std::move(arm)) {
   keep_sample();
-  if (board_.speech == HidSpeech::kAnswers) offer();
+  if (board_.report_mode == HidReportMode::kAnswers) offer();
 }
 
 HidArm::Sample HidArm::sample_now() const noexcept {
@@ -133,7 +133,8 @@ PacketResult HidArm::in(std::uint8_t address, std::span<std::byte> packet) noexc
     return {description_.endpoint(address) != nullptr ? Answer::kNak : Answer::kStall, 0};
   }
   BoardBytes report{};
-  const bool any = board_.speech == HidSpeech::kFreeRunning ? newest(report) : offered(report);
+  const bool any =
+      board_.report_mode == HidReportMode::kFreeRunning ? newest(report) : offered(report);
   if (!any) return {Answer::kNak, 0};
   ++counter_;
   ++truth_.reports;
@@ -159,7 +160,7 @@ PacketResult HidArm::out(std::uint8_t address, std::span<const std::byte> packet
     return {known ? Answer::kDone : Answer::kStall, known ? packet.size() : 0};
   }
   const PacketResult taken{Answer::kDone, packet.size()};
-  if (board_.speech == HidSpeech::kFreeRunning) {
+  if (board_.report_mode == HidReportMode::kFreeRunning) {
     use_message(packet);
     return taken;
   }

@@ -16,7 +16,7 @@ enum class HidLayout : std::uint8_t {
 };
 
 /// When a board sends reports.
-enum class HidSpeech : std::uint8_t {
+enum class HidReportMode : std::uint8_t {
   kFreeRunning,  ///< One in each frame, with or without messages.
   /// One when it starts, then one after each message of any length. It does not receive while a
   /// report waits for the host. One message waits in its endpoint meanwhile; the next is not
@@ -26,11 +26,11 @@ enum class HidSpeech : std::uint8_t {
 
 /// A kind of HID board: the bus behaviour of its firmware and its USB library.
 struct HidBoard {
-  HidLayout layout = HidLayout::kPolhem;   ///< Layout of reports and messages.
-  HidSpeech speech = HidSpeech::kAnswers;  ///< When it sends reports.
-  bool takes_set_idle = false;             ///< If false, it refuses all requests of the HID class.
-  std::uint8_t in = 0x81;                  ///< Endpoint of the reports.
-  std::uint8_t out = 0x01;                 ///< Endpoint of the messages.
+  HidLayout layout = HidLayout::kPolhem;                ///< Layout of reports and messages.
+  HidReportMode report_mode = HidReportMode::kAnswers;  ///< When it sends reports.
+  bool takes_set_idle = false;  ///< If false, it refuses all requests of the HID class.
+  std::uint8_t in = 0x81;       ///< Endpoint of the reports.
+  std::uint8_t out = 0x01;      ///< Endpoint of the messages.
 
   /// Returns the size of a report and of a message, bytes. Real-time: safe.
   constexpr std::size_t report_size() const noexcept {
@@ -51,7 +51,7 @@ struct HidBoard {
 /// mbed's USBHID class answers none of the requests of the HID class that these boards get [S mbed
 /// USBHID.cpp, USBCallback_request].
 inline constexpr HidBoard kWoodenHapticsBoard{.layout = HidLayout::kWoodenHaptics,
-                                              .speech = HidSpeech::kFreeRunning};
+                                              .report_mode = HidReportMode::kFreeRunning};
 
 /// The Polhem's first board, an mbed LPC1768. It sends a report, waits for a message without a
 /// timeout, takes the newest one, uses it only if it has 14 bytes, and starts over [S

@@ -42,9 +42,9 @@ driver::Result<std::unique_ptr<SimulatedFalcon>> SimulatedFalcon::make(
     const driver::JointModel<driver::DeltaArm>& model, const SimulatedArmSettings& settings,
     HandPath path, std::vector<std::byte> firmware, std::uint64_t seed) {
   const Eigen::Vector3d p_BH = path.points().front().p_BH;
-  const bool another_homes = settings.hand.stiffness == 0;
+  const bool needs_homing_hand = settings.hand.stiffness == 0;
   SimulatedArmSettings homed = settings;
-  if (another_homes) homed.hand = kHomingHand;
+  if (needs_homing_hand) homed.hand = kHomingHand;
   auto falcon =
       FalconOnUsb::make(falcon_description("SIM0001"), model, homed, resting_at(p_BH), {}, seed);
   if (!falcon) return falcon.error();
@@ -52,7 +52,7 @@ driver::Result<std::unique_ptr<SimulatedFalcon>> SimulatedFalcon::make(
   if (auto up = arm->bring_up(std::move(firmware), p_BH); !up) {
     return up.error();
   }
-  if (another_homes) {
+  if (needs_homing_hand) {
     if (auto taken = arm->falcon_->take_hand(settings.hand); !taken) {
       return taken.error();
     }

@@ -123,8 +123,8 @@ PacketResult FaultyDevice::control(const SetupPacket& setup, std::span<std::byte
 }
 
 // Corrupts a good packet; `before` is the previous packet in the same direction.
-void FaultyDevice::spoil(const FaultOrder& order, std::span<std::byte> packet, std::size_t& size,
-                         const Kept& before) noexcept {
+void FaultyDevice::corrupt(const FaultOrder& order, std::span<std::byte> packet, std::size_t& size,
+                           const Kept& before) noexcept {
   switch (order.kind) {
     case FaultKind::kShort:
       size /= 2;
@@ -179,7 +179,7 @@ PacketResult FaultyDevice::in(std::uint8_t address, std::span<std::byte> packet)
   if (open == nullptr) return result;
   if (open->order.kind == FaultKind::kLost) return {Answer::kNak, 0};
   repeat_in_ = open->order.kind == FaultKind::kDuplicate;
-  spoil(open->order, packet, result.size, before);
+  corrupt(open->order, packet, result.size, before);
   return result;
 }
 
@@ -200,7 +200,7 @@ PacketResult FaultyDevice::out(std::uint8_t address, std::span<const std::byte> 
     last_out_.size = size;
     std::copy_n(bytes.begin(), size, last_out_.bytes.begin());
   }
-  if (open != nullptr) spoil(open->order, bytes, size, before);
+  if (open != nullptr) corrupt(open->order, bytes, size, before);
   const PacketResult result = device_.out(address, std::span<const std::byte>(bytes).first(size));
   if (open != nullptr && open->order.kind == FaultKind::kDuplicate) {
     device_.out(address, std::span<const std::byte>(bytes).first(size));

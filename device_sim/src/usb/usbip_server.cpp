@@ -157,9 +157,9 @@ void UsbipServer::send_ready(Client& client) {
 
 void UsbipServer::drop_finished() {
   std::erase_if(clients_, [this](const Client& client) {
-    const bool said_all = client.session->state() == UsbipSession::State::kClosing &&
+    const bool sent_all = client.session->state() == UsbipSession::State::kClosing &&
                           client.session->output().empty();
-    if (!client.heard_all && !said_all) return false;
+    if (!client.heard_all && !sent_all) return false;
     add(past_, client.session->counters());
     close(client.socket);
     return true;

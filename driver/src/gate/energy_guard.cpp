@@ -7,13 +7,13 @@ namespace thimble::driver {
 namespace {
 
 /// More than any surface stores that a hand can press, J: 10 N over the workspace of an arm.
-constexpr double kHeldMost = 2;
+constexpr double kHeldMax = 2;
 
 }  // namespace
 
 void PassivityObserver::book(double work, double held) noexcept {
   // Written so that NaN and infinity store nothing.
-  const double more = held > 0 && held < HUGE_VAL ? std::min(held, kHeldMost) : 0;
+  const double more = held > 0 && held < HUGE_VAL ? std::min(held, kHeldMax) : 0;
   energy_ = std::min(energy_ - work, settings_.reservoir + more);
 }
 

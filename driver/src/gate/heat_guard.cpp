@@ -38,7 +38,7 @@ HeatGuard::HeatGuard(const HeatSettings& settings, const std::array<MotorDrive, 
                                     slope_[i]);
     // An invalid heat counts as the limit.
     if (!(heat_[i] >= 0 && heat_[i] <= 1)) heat_[i] = 1;
-    heat_most_ = std::max(heat_most_, heat_[i]);
+    max_heat_ = std::max(max_heat_, heat_[i]);
   }
   limit();
 }
@@ -51,7 +51,7 @@ void HeatGuard::advance(double dt) noexcept {
   }
   for (std::size_t i = 0; i < 3; ++i) {
     heat_[i] += gain_[i] * (load_[i] - heat_[i]);
-    heat_most_ = std::max(heat_most_, heat_[i]);
+    max_heat_ = std::max(max_heat_, heat_[i]);
   }
   limit();
 }

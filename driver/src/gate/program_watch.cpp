@@ -9,8 +9,8 @@ namespace {
 /// Returns by how much a force must return from its extreme to count as turned, N, after a swing of
 /// `swing`. It is more than a stiff wall's answer to one or two counts.
 double turn_of(double swing) noexcept {
-  constexpr double kLeast = 0.1;  // N [chosen]
-  return std::max(kLeast, swing / 4);
+  constexpr double kReturnMin = 0.1;  // N [chosen]
+  return std::max(kReturnMin, swing / 4);
 }
 
 }  // namespace
@@ -19,7 +19,7 @@ void ProgramWatch::restart() noexcept {
   axes_.fill({});
   begun_ = false;
   time_ = 0;
-  share_ = most_ = 1;
+  share_ = max_share_ = 1;
   muted_ = quiet_ = 0;
 }
 
@@ -49,10 +49,10 @@ double ProgramWatch::share(const Eigen::Vector3d& f_asked_W, const Eigen::Vector
     muted_ -= dt;
   } else if (oscillates != nullptr) {
     found(*oscillates);
-  } else if (share_ < most_) {
-    share_ = std::min(most_, share_ + most_ * dt / kReturn);
-  } else if (most_ < 1 && quiet_ > kForget) {
-    most_ = std::min(1.0, most_ + dt / kForget);
+  } else if (share_ < max_share_) {
+    share_ = std::min(max_share_, share_ + max_share_ * dt / kReturn);
+  } else if (max_share_ < 1 && quiet_ > kForget) {
+    max_share_ = std::min(1.0, max_share_ + dt / kForget);
   }
   return share_;
 }
@@ -60,7 +60,7 @@ double ProgramWatch::share(const Eigen::Vector3d& f_asked_W, const Eigen::Vector
 void ProgramWatch::found(const Axis& axis) noexcept {
   ++oscillations_;
   frequency_ = 1 / (axis.halves[0].time + axis.halves[1].time);
-  most_ = std::max(kLeastShare, kLess * std::max(share_, kLeastShare));
+  max_share_ = std::max(kShareMin, kLess * std::max(share_, kShareMin));
   share_ = 0;
   muted_ = kMute;
   quiet_ = 0;
@@ -144,7 +144,7 @@ bool ProgramWatch::Axis::oscillates(double force_max) const noexcept {
   if (halves[0].way >= kWay && springs(kGrowing)) {
     if (beyond(0, 2, kGrowth) && beyond(1, 2, kGrowth) && beyond(2, 2, kGrowth)) return true;
     if (known == kHalves && springs(kHalves) && feeds(4, force_max) &&
-        (halves[0].time + halves[1].time) * kHandMost < 1 && beyond(0, 6, kSteady) &&
+        (halves[0].time + halves[1].time) * kHandMax < 1 && beyond(0, 6, kSteady) &&
         beyond(1, 6, kSteady)) {
       return true;
     }

@@ -41,12 +41,12 @@ class ProgramWatch {
   static constexpr double kGrowth = 1.1;
   /// Frequency above which a sustained oscillation is not caused by a hand, Hz [chosen: fingers tap
   /// at up to 7 Hz M].
-  static constexpr double kHandMost = 8;
+  static constexpr double kHandMax = 8;
   static constexpr double kMute = 0.15;   ///< s [chosen: some periods of a hand on a spring]
   static constexpr double kReturn = 0.5;  ///< s [chosen: no hand is startled]
   static constexpr double kForget = 10;   ///< s [chosen]
   static constexpr double kLess = 0.4;  ///< A loop at twice its stable share returns to 0.8 of it.
-  static constexpr double kLeastShare = 1.0 / 64;  ///< Min. share of the force [chosen].
+  static constexpr double kShareMin = 1.0 / 64;  ///< Min. share of the force [chosen].
   static constexpr double kShortest = 1.0 / 300, kLongest = 1.0 / 5;  ///< Limits of a cycle, s.
 
   /// Takes the arm's limit of force, N.
@@ -105,9 +105,10 @@ class ProgramWatch {
   Eigen::Vector3d p_WT_{0, 0, 0};
   double time_ = 0;  // s
   bool begun_ = false;
-  double share_ = 1, most_ = 1;  // share of the force now, and the share to which it may return
-  double muted_ = 0;             // remaining time, s
-  double quiet_ = 0;             // time since the last oscillation, s
+  double share_ = 1,
+         max_share_ = 1;  // share of the force now, and the share to which it may return
+  double muted_ = 0;      // remaining time, s
+  double quiet_ = 0;      // time since the last oscillation, s
   std::uint64_t oscillations_ = 0;
   double frequency_ = 0;
 };

@@ -216,7 +216,7 @@ GatedForce SafetyGate::pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::V
     }
     if (program) f_W = within_open(f_W + f_program_W_);
   } else if (energy_.stage == EnergyStage::kPassivity) {
-    counters_.energy_least = std::min(counters_.energy_least, observer_.energy());
+    counters_.min_energy = std::min(counters_.min_energy, observer_.energy());
     const Eigen::Vector3d damping_W = observer_.damping(v_WT, dt);
     // A damper within its bounds cannot stop a wall that keeps pushing slowly. So beyond the onset
     // the force fades with the debt, independent of the measured velocity, and at twice the onset

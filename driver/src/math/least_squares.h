@@ -56,7 +56,7 @@ class ScaledNormal {
 struct SearchEffort {
   int rounds = 30;           ///< Max. number of rounds.
   int tries = 8;             ///< Max. number of steps per round until one is better.
-  double least_gain = 1e-6;  ///< Stops when a round gains less than this share.
+  double min_gain = 1e-6;    ///< Stops when a round gains less than this share.
   double damping = 1e-2;     ///< Damping of the first step, relative to the diagonal.
   double max_damping = 1e6;  ///< Stops when no step with less damping is better.
   double raised = 5;         ///< Factor of the damping after a step that is not better.
@@ -97,7 +97,7 @@ double levenberg_marquardt(const Problem& problem, X& x, const SearchEffort& eff
       best = sum;
       x = next;
     }
-    if (!(gained > effort.least_gain * best)) break;
+    if (!(gained > effort.min_gain * best)) break;
   }
   return best;
 }

@@ -44,7 +44,7 @@ bool moves(char32_t code) {
   return false;
 }
 
-std::string with_questions(std::string_view text, bool lines) {
+std::string replace_unprintable(std::string_view text, bool lines) {
   std::string shown;
   shown.reserve(text.size());
   while (!text.empty()) {
@@ -63,11 +63,11 @@ std::string with_questions(std::string_view text, bool lines) {
 }  // namespace
 
 std::string printable(std::string_view text) {
-  return with_questions(text, true);
+  return replace_unprintable(text, true);
 }
 
 std::string printable_name(std::string_view text) {
-  return with_questions(text, false);
+  return replace_unprintable(text, false);
 }
 
 }  // namespace thimble::driver

@@ -121,7 +121,7 @@ class HidTransport final : public Transport {
 };
 
 /// Reads the report descriptor of an open node; empty if it is not a HID device.
-std::optional<HidReports> ask_for_reports(int file) {
+std::optional<HidReports> query_reports(int file) {
   int size = 0;
   hidraw_report_descriptor descriptor{};
   if (ioctl(file, HIDIOCGRDESCSIZE, &size) < 0 || size <= 0) return std::nullopt;
@@ -139,7 +139,7 @@ Result<std::unique_ptr<Transport>> open_hid_transport(const std::string& node,
                                                       const Clock& clock) {
   auto lock = NodeLock::take(node);
   if (!lock) return lock.error();
-  const auto reports = ask_for_reports(lock->file());
+  const auto reports = query_reports(lock->file());
   if (!reports)
     return Error{node + " is not a usable HID device. Check the node with `thimble devices`."};
   if (message_size > 0 && reports->out_bytes != message_size) {

@@ -28,15 +28,15 @@ TransportRead StreamTransport::read_latest(std::span<std::byte> buffer,
 }
 
 TransportStatus StreamTransport::write(std::span<const std::byte> report) noexcept {
-  if (!awaiting()) waited_out_ = false;
-  if (awaiting() && !waited_out_) {
+  if (!awaiting()) wait_expired_ = false;
+  if (awaiting() && !wait_expired_) {
     const std::int64_t until_ns = clock_.now_ns() + kTurn_ns;
     std::int64_t wait_ns = kTurn_ns;
     for (int round = 0; round < kRoundsMax && !lost_ && awaiting() && wait_ns > 0; ++round) {
       lost_ = pump(wait_ns) == TransportStatus::kLost;
       wait_ns = until_ns - clock_.now_ns();
     }
-    waited_out_ = awaiting();
+    wait_expired_ = awaiting();
   }
   if (lost_) return TransportStatus::kLost;
   if (awaiting()) ++unanswered_;

@@ -63,7 +63,7 @@ class StreamTransport : public Transport {
   std::uint64_t unanswered_ = 0;
   std::uint64_t found_before_ = 0;  // number of messages received when the last one was sent
   bool spoken_ = false;
-  bool waited_out_ = false;  // write waited without success since the last answer
+  bool wait_expired_ = false;  // write waited without success since the last answer
   bool lost_ = false;
 };
 

@@ -33,7 +33,7 @@ LinkWrite SlotLink::write(const GatedForce& force, const ArmSample&,
                           const Eigen::Matrix3d& R_WB) noexcept {
   if (is_lost()) return {LinkStatus::kLost};
   const double length = force.f_T_W().norm();
-  const double scale = length > force_most_ ? force_most_ / length : 1;
+  const double scale = length > max_force_ ? max_force_ / length : 1;
   // A refused force must not be sent when the arm takes forces again.
   const bool refuses = refuses_.load(std::memory_order_acquire);
   const bool taken =
@@ -52,7 +52,7 @@ LinkStatus SlotLink::settled() noexcept {
 
 void SlotLink::publish(const ArmSample& sample) noexcept {
   NumberedSample fresh{sample, ++published_};
-  fresh.sample.pose.q = sample.pose.p_BT;  // as in ToldArm
+  fresh.sample.pose.q = sample.pose.p_BT;  // as in VendorPoseArm
   newest_.put(fresh);
 }
 

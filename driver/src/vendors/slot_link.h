@@ -20,8 +20,8 @@ class SlotLink : public ArmLink {
   /// Takes the capabilities of the arm, the loop's clock, which outlives the link, and the arm's
   /// max. force (N), to which larger ones are cut.
   SlotLink(const ArmTraits& traits, Clock& clock,
-           double force_most = std::numeric_limits<double>::infinity())
-      : traits_(traits), clock_(clock), force_most_(force_most) {}
+           double max_force = std::numeric_limits<double>::infinity())
+      : traits_(traits), clock_(clock), max_force_(max_force) {}
 
   const ArmTraits& traits() const noexcept override { return traits_; }
   LinkRead read(ArmSample& sample, std::int64_t deadline_ns) noexcept override;
@@ -54,7 +54,7 @@ class SlotLink : public ArmLink {
 
   ArmTraits traits_;
   Clock& clock_;
-  double force_most_;
+  double max_force_;
   NewestSlot<NumberedSample> newest_;
   ForceBox box_;
   std::atomic<bool> lost_{false}, refuses_{false};

@@ -99,8 +99,8 @@ void find_creases(const std::vector<Vector3d>& vertices,
                   const std::vector<std::array<std::int32_t, 3>>& triangles, const Faces& faces,
                   double crease_angle, std::span<PackedTriangle> packed) {
   const double crease_cosine = math::cos(crease_angle);
-  const double hollow_cosine = math::cos(std::min(crease_angle, kHollowCreaseAngle));
-  in_halves(triangles.size(), [&](std::size_t first, std::size_t end) noexcept {
+  const double concave_cosine = math::cos(std::min(crease_angle, kConcaveCreaseAngle));
+  parallel_split(triangles.size(), [&](std::size_t first, std::size_t end) noexcept {
     for (std::size_t t = first; t < end; ++t) {
       std::uint32_t flags = 0;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -108,7 +108,7 @@ void find_creases(const std::vector<Vector3d>& vertices,
         const Vector3d& other = faces.normals[behind];
         const double cosine = faces.normals[t].dot(other);
         // The corner behind the edge is above this face.
-        const auto is_hollow = [&] {
+        const auto is_concave = [&] {
           const Vector3d& begin = vertices[index(triangles[t][k])];
           for (const std::int32_t v : triangles[behind]) {
             if (v == triangles[t][k] || v == triangles[t][(k + 1) % 3]) continue;
@@ -116,7 +116,7 @@ void find_creases(const std::vector<Vector3d>& vertices,
           }
           return false;
         };
-        const bool sharp = !(cosine >= crease_cosine) || (cosine < hollow_cosine && is_hollow());
+        const bool sharp = !(cosine >= crease_cosine) || (cosine < concave_cosine && is_concave());
         if (sharp) flags |= 1u << k;
       }
       packed[t].flags |= flags;
@@ -167,7 +167,7 @@ std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
   faces.normals.resize(triangles.size());
   faces.angles.resize(triangles.size());
   std::atomic<std::size_t> flat = triangles.size();
-  in_halves(triangles.size(), [&](std::size_t begin, std::size_t end) noexcept {
+  parallel_split(triangles.size(), [&](std::size_t begin, std::size_t end) noexcept {
     for (std::size_t t = begin; t < end; ++t) {
       if (measure_face(vertices, triangles, t, faces)) continue;
       // The first flat triangle is reported.
@@ -178,7 +178,7 @@ std::ptrdiff_t assign_corner_normals(const std::vector<Vector3d>& vertices,
   });
   if (flat < triangles.size()) return static_cast<std::ptrdiff_t>(flat.load());
   find_creases(vertices, triangles, faces, crease_angle, packed);
-  in_halves(vertices.size(), [&](std::size_t begin, std::size_t end) {
+  parallel_split(vertices.size(), [&](std::size_t begin, std::size_t end) {
     std::vector<bool> done;
     for (std::size_t v = begin; v < end; ++v) {
       assign_vertex(triangles, half_edges, faces, static_cast<std::int32_t>(v), done, packed);

@@ -12,7 +12,7 @@ struct OffsetPlace {
 };
 
 /// The way from a tip p to its point q on the triangle.
-struct OffsetWay {
+struct PathToSurface {
   Eigen::Vector3d to_surface{0, 0, 0};          ///< q - p, in steps of the lattice.
   Eigen::Matrix3d J = Eigen::Matrix3d::Zero();  ///< Derivative of q by p.
   Eigen::Vector3d fall{0, 0, 0};                ///< Minus the gradient in p of the felt depth.

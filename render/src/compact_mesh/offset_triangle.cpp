@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "compact_mesh/unpack_triangle.h"
-#include "mesh/triangle_foot.h"
+#include "mesh/triangle_place.h"
 
 namespace thimble::render {
 
@@ -105,7 +105,7 @@ OffsetPlace OffsetTriangle::locate_far(__m128d ab, double h, double d) const noe
   return place;
 }
 
-OffsetWay OffsetTriangle::way_to_surface(const OffsetPlace& place) const noexcept {
+PathToSurface OffsetTriangle::path_to_surface(const OffsetPlace& place) const noexcept {
   using Eigen::Vector3d;
   // Each is a coordinate along one side or the normal; the sides are their dual basis.
   Eigen::Matrix3d along;
@@ -121,25 +121,25 @@ OffsetWay OffsetTriangle::way_to_surface(const OffsetPlace& place) const noexcep
   const std::array<Vector3d, 3> n{n_0, n_0 + vector(n_[1]), n_0 + vector(n_[2])};
   const Vector3d weights = within_triangle({place.l0, place.l1, place.l2});
   const double depth = place.depth;
-  const TriangleFoot foot = offset_foot(x, n, weights, depth);
+  const TrianglePlace closest = offset_triangle_place(x, n, weights, depth);
   const Vector3d N = weights[0] * n[0] + weights[1] * n[1] + weights[2] * n[2];
   // As feel_within: the depth is d |N| + bend, bend = rise / (1 + |N|) with rise twice the height.
   const double size = N.norm();
-  const Vector3d below_slope = offset_depth_slope(n, foot, depth);
+  const Vector3d below_slope = offset_depth_slope(n, closest, depth);
   const Vector3d size_slope =
-      foot.change.transpose() * (Vector3d(n[0].dot(N), n[1].dot(N), n[2].dot(N)) / size);
+      closest.change.transpose() * (Vector3d(n[0].dot(N), n[1].dot(N), n[2].dot(N)) / size);
   const double rise = weights[1] * (weights[0] * bulge_[0] + weights[2] * bulge_[1]) +
                       weights[2] * weights[0] * bulge_[2];
   const double bend = rise / (1 + size);
-  const Vector3d bend_slope = (2 * height_slope(x, n, foot) - bend * size_slope) / (1 + size);
+  const Vector3d bend_slope = (2 * height_slope(x, n, closest) - bend * size_slope) / (1 + size);
   const double below = depth * size;
   Vector3d slope = below_slope + bend_slope;
   if (bend < 0 && below >= 0) {
-    const HollowDepthChange change = change_below_hollow(below, -bend);
+    const ConcaveDepthChange change = change_below_concave(below, -bend);
     slope = change.per_depth * below_slope - change.per_gap * bend_slope;
   }
   return {.to_surface = depth * N,
-          .J = x[1] * foot.change.row(1) + x[2] * foot.change.row(2),
+          .J = x[1] * closest.change.row(1) + x[2] * closest.change.row(2),
           .fall = -slope};
 }
 

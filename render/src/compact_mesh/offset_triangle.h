@@ -11,7 +11,7 @@
 #include "compact_mesh/packed_surface.h"
 #include "compact_mesh/sse2.h"
 #include "compact_mesh/wide_lanes.h"
-#include "mesh/depth_below_hollow.h"
+#include "mesh/depth_below_concave.h"
 
 namespace thimble::render {
 
@@ -25,7 +25,7 @@ namespace thimble::render {
 ///           \__p___/             bend = sum l_i (x_i - q) . n_i / (1 + |sum l_i n_i|)
 ///
 /// Where the surface is concave, `bend` is negative and the depth begins softly
-/// (depth_below_hollow). Neighbours share offset edges. `bend` is the height of a smooth surface
+/// (depth_below_concave). Neighbours share offset edges. `bend` is the height of a smooth surface
 /// with these normals above the triangle, right to second order [PHYSICS 3]. As a sum over pairs of
 /// corners its numerator is sum over i < j of l_i l_j (x_i - x_j) . (n_i - n_j). All Real-time:
 /// safe. Points are in steps of the lattice.
@@ -53,10 +53,10 @@ class alignas(64) OffsetTriangle {
   OffsetResponse feel_within(const OffsetPlace& place) const noexcept;
 
   /// Returns the way from the tip to the point q of the triangle, the derivative of q by the tip
-  /// (mesh/triangle_foot.h), and minus the gradient of the felt depth. A place outside the triangle
-  /// counts as on its border. Real-time: safe; some 100 ns, for stages that need the place itself,
-  /// such as textures.
-  OffsetWay way_to_surface(const OffsetPlace& place) const noexcept;
+  /// (mesh/triangle_place.h), and minus the gradient of the felt depth. A place outside the
+  /// triangle counts as on its border. Real-time: safe; some 100 ns, for stages that need the place
+  /// itself, such as textures.
+  PathToSurface path_to_surface(const OffsetPlace& place) const noexcept;
 
   /// Returns whether an edge is a crease, in bit k for edge k.
   std::uint32_t creases() const noexcept { return creases_; }
@@ -189,7 +189,7 @@ inline OffsetResponse OffsetTriangle::feel_within(const OffsetPlace& place) cons
   OffsetResponse felt{{low(n), high(n), low(z) * per_size}, below + bend};
   // Near the triangles of a concave place. Written so that NaN skips this.
   if (felt.depth < -bend && bend < 0 && below >= 0) [[unlikely]] {
-    felt.depth = depth_below_hollow(below, -bend);
+    felt.depth = depth_below_concave(below, -bend);
   }
   return felt;
 }

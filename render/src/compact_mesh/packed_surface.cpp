@@ -66,7 +66,7 @@ LatticePoint on_lattice(const Vector3d& p) noexcept {
 // Returns the order of the packed triangles.
 std::vector<PlacedIndex> order_of(const TriangleMesh& mesh, std::span<const LatticePoint> points) {
   std::vector<PlacedIndex> order(mesh.triangles.size());
-  in_halves(order.size(), [&](std::size_t begin, std::size_t end) noexcept {
+  parallel_split(order.size(), [&](std::size_t begin, std::size_t end) noexcept {
     for (std::size_t t = begin; t < end; ++t) {
       const auto& [i, j, k] = mesh.triangles[t];
       const LatticePoint &a = points[index(i)], &b = points[index(j)], &c = points[index(k)];
@@ -156,13 +156,13 @@ driver::Result<PackedSurface> PackedSurface::build(const TriangleMesh& mesh,
   surface.triangles_.resize(count);
   {
     std::vector<LatticePoint> points(mesh.vertices.size());
-    in_halves(points.size(), [&](std::size_t begin, std::size_t end) noexcept {
+    parallel_split(points.size(), [&](std::size_t begin, std::size_t end) noexcept {
       for (std::size_t v = begin; v < end; ++v) {
         points[v] = on_lattice(surface.to_lattice(mesh.vertices[v]));
       }
     });
     const std::vector<PlacedIndex> order = order_of(mesh, points);
-    in_halves(count, [&](std::size_t begin, std::size_t end) noexcept {
+    parallel_split(count, [&](std::size_t begin, std::size_t end) noexcept {
       for (std::size_t t = begin; t < end; ++t) {
         PackedTriangle& packed = surface.triangles_[t];
         triangles[t] = mesh.triangles[index(order[t].index)];
@@ -181,7 +181,7 @@ driver::Result<PackedSurface> PackedSurface::build(const TriangleMesh& mesh,
   // A triangle that shares an edge with another of the same winding is found by the triangle behind
   // that edge, which finds two.
   std::atomic<bool> all_paired = true;
-  in_halves(count, [&](std::size_t begin, std::size_t end) noexcept {
+  parallel_split(count, [&](std::size_t begin, std::size_t end) noexcept {
     for (std::size_t t = begin; t < end; ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
         const std::int32_t behind = half_edges.opposite(triangles[t][(k + 1) % 3], triangles[t][k]);

@@ -45,7 +45,7 @@ struct alignas(64) PackedTriangle {
 };
 static_assert(sizeof(PackedTriangle) == 64 && alignof(PackedTriangle) == 64);
 
-/// The packed value of a coordinate of 1. It has so many divisors that the normals of symmetric
+/// The packed value of a coordinate of 1. It has many divisors that the normals of symmetric
 /// shapes are integers. At a half, the rounding of a scaled mesh would decide.
 inline constexpr float kOctahedron = 32760;
 

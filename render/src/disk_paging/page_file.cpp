@@ -91,7 +91,7 @@ bool read_all(int descriptor, void* data, std::size_t size, std::int64_t at) noe
   return true;
 }
 
-driver::Error trouble(const std::filesystem::path& file, const std::string& what) {
+driver::Error file_error(const std::filesystem::path& file, const std::string& what) {
   return driver::Error{file.string() + ": " + what};
 }
 
@@ -167,8 +167,8 @@ driver::Result<PageFileWriter> PageFileWriter::create(const std::filesystem::pat
                                                       const Lattice& lattice,
                                                       std::int64_t triangle_count) {
   if (triangle_count <= 0 || triangle_count > std::numeric_limits<std::int32_t>::max()) {
-    return trouble(file, "a page file holds 1 to 2^31 - 1 triangles, not " +
-                             std::to_string(triangle_count) + ".");
+    return file_error(file, "a page file holds 1 to 2^31 - 1 triangles, not " +
+                                std::to_string(triangle_count) + ".");
   }
   auto state = std::make_unique<State>();
   state->file = file;
@@ -178,7 +178,7 @@ driver::Result<PageFileWriter> PageFileWriter::create(const std::filesystem::pat
   state->page.reserve(kPageTriangles);
   state->descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (state->descriptor < 0) {
-    return trouble(file, std::string("it cannot be written (") + std::strerror(errno) + ").");
+    return file_error(file, std::string("it cannot be written (") + std::strerror(errno) + ").");
   }
   return PageFileWriter(std::move(state));
 }
@@ -188,7 +188,8 @@ driver::Result<void> PageFileWriter::append(std::span<const PackedTriangle> tria
     state_->page.push_back(packed);
     ++state_->written;
     if (state_->page.size() == static_cast<std::size_t>(kPageTriangles) && !state_->flush()) {
-      return trouble(state_->file, std::string("writing failed (") + std::strerror(errno) + ").");
+      return file_error(state_->file,
+                        std::string("writing failed (") + std::strerror(errno) + ").");
     }
   }
   return {};
@@ -197,9 +198,9 @@ driver::Result<void> PageFileWriter::append(std::span<const PackedTriangle> tria
 driver::Result<void> PageFileWriter::finish() {
   State& state = *state_;
   if (state.written != state.header.triangle_count) {
-    return trouble(state.file, std::to_string(state.written) + " triangles were written, but " +
-                                   std::to_string(state.header.triangle_count) +
-                                   " were announced.");
+    return file_error(state.file, std::to_string(state.written) + " triangles were written, but " +
+                                      std::to_string(state.header.triangle_count) +
+                                      " were announced.");
   }
   // The header is written last: an unfinished file is not a page file.
   const bool flushed = state.flush();
@@ -209,7 +210,7 @@ driver::Result<void> PageFileWriter::finish() {
       !write_all(state.descriptor, state.sums.data(), state.sums.size() * sizeof(std::uint64_t),
                  static_cast<std::int64_t>(sizeof(Header) + boxes_size)) ||
       !write_all(state.descriptor, &state.header, sizeof(Header), 0)) {
-    return trouble(state.file, std::string("writing failed (") + std::strerror(errno) + ").");
+    return file_error(state.file, std::string("writing failed (") + std::strerror(errno) + ").");
   }
   return {};
 }
@@ -231,18 +232,18 @@ bool is_page_file(const std::filesystem::path& file) {
 driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
   PageFile opened;
   auto regular = driver::RegularFile::open(file);
-  if (!regular) return trouble(file, regular.error().message);
+  if (!regular) return file_error(file, regular.error().message);
   const auto file_bytes = static_cast<std::int64_t>(regular->size());
   opened.descriptor_ = regular->release();
   Header header;
   if (file_bytes < static_cast<std::int64_t>(sizeof(Header)) ||
       !read_all(opened.descriptor_, &header, sizeof(Header), 0) || header.magic != kMagic) {
-    return trouble(file, "not a page file; create one with `thimble mesh page IN OUT`.");
+    return file_error(file, "not a page file; create one with `thimble mesh page IN OUT`.");
   }
   const Header expected;
   if (header.version != kVersion || header.triangle_bytes != expected.triangle_bytes ||
       header.page_triangles != expected.page_triangles) {
-    return trouble(file, "it was written by another version of Thimble; write it again.");
+    return file_error(file, "it was written by another version of Thimble; write it again.");
   }
   const bool numbers_can_be = header.triangle_count > 0 &&
                               header.triangle_count <= std::numeric_limits<std::int32_t>::max() &&
@@ -250,7 +251,7 @@ driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
                               std::isfinite(header.rise) &&
                               std::all_of(header.origin.begin(), header.origin.end(),
                                           [](double x) { return std::isfinite(x); });
-  if (!numbers_can_be) return trouble(file, "its header is damaged; write it again.");
+  if (!numbers_can_be) return file_error(file, "its header is damaged; write it again.");
 
   const std::int64_t pages = pages_of(header.triangle_count);
   opened.records_at_ = records_begin(pages);
@@ -258,8 +259,8 @@ driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
       opened.records_at_ +
       header.triangle_count * static_cast<std::int64_t>(sizeof(PackedTriangle));
   if (file_bytes < size) {
-    return trouble(file, "it ends after " + std::to_string(file_bytes) + " of " +
-                             std::to_string(size) + " bytes; write it again.");
+    return file_error(file, "it ends after " + std::to_string(file_bytes) + " of " +
+                                std::to_string(size) + " bytes; write it again.");
   }
   opened.boxes_.resize(static_cast<std::size_t>(pages));
   opened.sums_.resize(static_cast<std::size_t>(pages));
@@ -268,13 +269,13 @@ driver::Result<PageFile> PageFile::open(const std::filesystem::path& file) {
       !read_all(opened.descriptor_, opened.sums_.data(),
                 opened.sums_.size() * sizeof(std::uint64_t),
                 static_cast<std::int64_t>(sizeof(Header) + boxes_size))) {
-    return trouble(file, "it could not be read.");
+    return file_error(file, "it could not be read.");
   }
   if (sum_of(header, opened.boxes_, opened.sums_) != header.sum) {
-    return trouble(file, "its header is damaged; write it again.");
+    return file_error(file, "its header is damaged; write it again.");
   }
   if (!std::all_of(opened.boxes_.begin(), opened.boxes_.end(), can_be)) {
-    return trouble(file, "its boxes are damaged; write it again.");
+    return file_error(file, "its boxes are damaged; write it again.");
   }
   opened.whole_ = opened.boxes_.front();
   for (const PageBox& box : opened.boxes_) {

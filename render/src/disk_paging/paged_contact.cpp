@@ -49,14 +49,14 @@ const ContactState& PagedContact::update(const driver::DeviceState& state) noexc
   return state_;
 }
 
-SurfaceFoot PagedContact::foot(const Vector3d& p_WT) const noexcept {
+ClosestSurfacePoint PagedContact::closest(const Vector3d& p_WT) const noexcept {
   const Vector3d p_MT = in_mesh(p_WT);
-  SurfaceFoot foot = contact_.foot(p_MT);
-  foot.p_M = p_WT + place_.scale * (place_.R_WM * (foot.p_M - p_MT));
-  foot.n_M = state_.n_W;
-  foot.J_MT = place_.R_WM * foot.J_MT * place_.R_WM.transpose();
-  foot.fall_W = place_.R_WM * foot.fall_W;
-  return foot;
+  ClosestSurfacePoint closest = contact_.closest(p_MT);
+  closest.p_M = p_WT + place_.scale * (place_.R_WM * (closest.p_M - p_MT));
+  closest.n_M = state_.n_W;
+  closest.J_MT = place_.R_WM * closest.J_MT * place_.R_WM.transpose();
+  closest.fall_W = place_.R_WM * closest.fall_W;
+  return closest;
 }
 
 // Returns the maximum depth of the tip if the surface had been entered normally.

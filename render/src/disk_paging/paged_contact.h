@@ -68,7 +68,7 @@ struct PagedPlace {
 
 /// Finds the contact on a surface that has only the pages around the tip in memory [BP 4.1]. A
 /// `Contact` stage of ContactForceLaw for meshes that do not fit into memory. It measures the same
-/// as MemoryContact.
+/// as InMemoryContact.
 ///
 /// The servo never waits for the disk. Absent parts are held (packed_contact.h), and the felt depth
 /// never grows faster than the tip sinks in by more than `kRiseSpeed`. So a tip that entered while
@@ -93,7 +93,7 @@ class PagedContact {
 
   /// Returns the surface point of the tip at `p_WT` (W, m) (PackedContact::foot). Real-time: safe;
   /// never waits.
-  SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept;
+  ClosestSurfacePoint closest(const Eigen::Vector3d& p_WT) const noexcept;
 
   const TrackerCounters& counters() const noexcept { return contact_.counters(); }
   /// Returns the number of ticks in which a needed page was absent.

@@ -20,8 +20,8 @@ class Gravity {
 
     /// Reads `mass` and `acceleration`. Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectContext&) {
-      reader.number("mass", mass, {.unit = "kg", .least = 0, .most = 10, .required = true});
-      reader.vector("acceleration", acceleration, {.unit = "m/s^2", .least = -100, .most = 100});
+      reader.number("mass", mass, {.unit = "kg", .min = 0, .max = 10, .required = true});
+      reader.vector("acceleration", acceleration, {.unit = "m/s^2", .min = -100, .max = 100});
     }
   };
 

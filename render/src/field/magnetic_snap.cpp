@@ -8,7 +8,7 @@ namespace thimble::render {
 namespace {
 
 constexpr std::size_t kTargetsMax = 64;  // [chosen: below a microsecond per tick]
-constexpr NumberLimits kPlace{.unit = "m", .least = -2, .most = 2, .required = true};
+constexpr NumberLimits kPlace{.unit = "m", .min = -2, .max = 2, .required = true};
 
 void read_target(SettingsReader& reader, MagneticSnap::Settings::Target& target) {
   const bool line = reader.has("from") || reader.has("to");
@@ -22,9 +22,9 @@ void read_target(SettingsReader& reader, MagneticSnap::Settings::Target& target)
     target.to_O = target.from_O;
   }
   // Larger than any desk-top arm [DEVICES 3]; catches misplaced decimal points.
-  reader.number("force", target.force, {.unit = "N", .least = 0, .most = 50, .required = true});
+  reader.number("force", target.force, {.unit = "N", .min = 0, .max = 50, .required = true});
   reader.number("capture_radius", target.radius,
-                {.unit = "m", .least = 1e-4, .most = 1, .required = true});
+                {.unit = "m", .min = 1e-4, .max = 1, .required = true});
 }
 
 }  // namespace

@@ -12,10 +12,10 @@ constexpr std::size_t kChargesMax = 64;  // [chosen: below a microsecond per tic
 void PointCharges::Settings::read(SettingsReader& reader, const EffectContext&) {
   reader.list("charges", [this](SettingsReader& entry) {
     One& one = charges.emplace_back();
-    entry.vector("position", one.p_O, {.unit = "m", .least = -2, .most = 2, .required = true});
+    entry.vector("position", one.p_O, {.unit = "m", .min = -2, .max = 2, .required = true});
     // Larger than any desk-top arm [DEVICES 3]; catches misplaced decimal points.
-    entry.number("force", one.force, {.unit = "N", .least = -50, .most = 50, .required = true});
-    entry.number("radius", one.radius, {.unit = "m", .least = 1e-4, .most = 1});
+    entry.number("force", one.force, {.unit = "N", .min = -50, .max = 50, .required = true});
+    entry.number("radius", one.radius, {.unit = "m", .min = 1e-4, .max = 1});
   });
   if (charges.size() > kChargesMax) {
     reader.reject("charges",

@@ -72,14 +72,14 @@ class PrimitiveContact {
 
   /// Returns the surface point below the tip and its derivative by the tip (surface_response.h).
   /// Precondition: the last `update` touches. Real-time: safe.
-  SurfaceFoot foot(const Eigen::Vector3d&) const noexcept {
-    SurfaceFoot foot = flat_foot(state_);
+  ClosestSurfacePoint closest(const Eigen::Vector3d&) const noexcept {
+    ClosestSurfacePoint closest = flat_closest_point(state_);
     if constexpr (requires { shape_.stretch(state_.depth); }) {
       const double stretch = shape_.stretch(state_.depth);
       // At a centre no surface point is the closest.
-      foot.J_MT *= std::isfinite(stretch) ? stretch : 0;
+      closest.J_MT *= std::isfinite(stretch) ? stretch : 0;
     }
-    return foot;
+    return closest;
   }
 
   const Shape& shape() const noexcept { return shape_; }

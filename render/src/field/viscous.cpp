@@ -8,9 +8,9 @@
 namespace thimble::render {
 
 void Viscous::Settings::read(SettingsReader& reader, const EffectContext& context) {
-  reader.number("damping", damping, {.unit = "N s/m", .least = 0, .most = 1000, .required = true});
+  reader.number("damping", damping, {.unit = "N s/m", .min = 0, .max = 1000, .required = true});
   const double late = context.tick + context.delay;
-  const double most = most_damping(context);
+  const double most = max_damping(context);
   if (!(damping <= most)) {
     reader.reject(
         "damping",
@@ -20,7 +20,7 @@ void Viscous::Settings::read(SettingsReader& reader, const EffectContext& contex
   }
 }
 
-double Viscous::most_damping(const EffectContext& context) {
+double Viscous::max_damping(const EffectContext& context) {
   // If the arm's mass is not known, there is nothing to compare with.
   if (!(context.tip_mass > 0)) return std::numeric_limits<double>::infinity();
   const double late = context.tick + context.delay;

@@ -29,21 +29,21 @@ class Viscous {
   };
 
   Viscous(const Settings& settings, const EffectContext& context)
-      : damping_(settings.damping), damping_most_(most_damping(context)) {}
+      : damping_(settings.damping), max_damping_(max_damping(context)) {}
 
   /// Returns the maximum damping that the loop can hold, N s/m: see Settings::read; infinite if the
   /// arm's mass is not known. Real-time: never from the servo thread.
-  static double most_damping(const EffectContext& context);
+  static double max_damping(const EffectContext& context);
 
   /// Lists the damping, up to two thirds of the maximum, because the filter of the velocity adds
   /// delay. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings) {
     constexpr double kMargin = 1.5, kUnknown = 20;  // chosen; N s/m
-    const double most = damping_most_ < HUGE_VAL ? damping_most_ / kMargin : kUnknown;
+    const double most = max_damping_ < HUGE_VAL ? max_damping_ / kMargin : kUnknown;
     settings.add<[](Viscous& field, double b) noexcept { field.damping_ = b; }>(
         *this, {.name = "damping",
                 .unit = "N s/m",
-                .most = most,
+                .max = most,
                 .value = damping_,
                 .sensitivity = {.per_speed = 1}});
   }
@@ -57,7 +57,7 @@ class Viscous {
 
  private:
   double damping_;
-  double damping_most_;
+  double max_damping_;
 };
 
 }  // namespace thimble::render

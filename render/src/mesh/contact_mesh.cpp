@@ -9,7 +9,7 @@
 
 #include "mesh/adjacency.h"
 #include "mesh/parallel_split.h"
-#include "mesh/repair/sound_mesh.h"
+#include "mesh/repair/checked_mesh.h"
 
 namespace thimble::render {
 namespace {
@@ -65,7 +65,7 @@ struct ContactMesh::EdgeSides {
 
 template <class Work>
 void ContactMesh::for_all(const Work& work) const {
-  in_halves(triangles_.size(), [&work](std::size_t begin, std::size_t end) noexcept {
+  parallel_split(triangles_.size(), [&work](std::size_t begin, std::size_t end) noexcept {
     for (std::size_t t = begin; t < end; ++t) work(static_cast<std::int32_t>(t));
   });
 }
@@ -73,7 +73,7 @@ void ContactMesh::for_all(const Work& work) const {
 driver::Result<ContactMesh> ContactMesh::build(const TriangleMesh& mesh,
                                                const ContactMeshOptions& options) {
   const auto neighbours = find_adjacency(mesh);
-  auto looked = look_at_mesh_beside(mesh, neighbours, options.orient);
+  auto looked = check_contact_mesh_async(mesh, neighbours, options.orient);
   // The findings of the check are reported, whatever else is wrong.
   std::optional<ContactMesh> contact;
   if (neighbours) contact = assemble(mesh, *neighbours, options);
@@ -205,12 +205,12 @@ void ContactMesh::compute_edges() {
 // An edge plane leans over its face by half the angle there: backwards if the edge is concave.
 void ContactMesh::measure_edges(std::int32_t triangle) noexcept {
   TriangleCell& measured = cells_[static_cast<std::size_t>(triangle)];
-  double hollow = 0;
+  double concave = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double lean = edge_plane(triangle, k).n.dot(measured.face.n);
-    if (lean < -TriangleCell::kFlat) hollow = std::max(hollow, -lean);
+    if (lean < -TriangleCell::kFlat) concave = std::max(concave, -lean);
   }
-  measured.hollow = rounded_up(hollow);
+  measured.concave = rounded_up(concave);
 }
 
 void ContactMesh::collect_fans() {
@@ -239,16 +239,16 @@ void ContactMesh::collect_fans() {
 void ContactMesh::measure_around() {
   for_all([this](std::int32_t triangle) noexcept {
     TriangleCell& measured = cells_[static_cast<std::size_t>(triangle)];
-    double most_squared = 0;
+    double max_squared = 0;
     for (const std::int32_t v : corners(triangle)) {
       const auto around = fan(v);
-      if (around.size() > TriangleCell::kFanMax) most_squared = 4;
-      if (most_squared == 4) break;
+      if (around.size() > TriangleCell::kFanMax) max_squared = 4;
+      if (max_squared == 4) break;
       for (const std::int32_t t : around) {
-        most_squared = std::max(most_squared, (cell(t).face.n - measured.face.n).squaredNorm());
+        max_squared = std::max(max_squared, (cell(t).face.n - measured.face.n).squaredNorm());
       }
     }
-    measured.around = rounded_up(std::sqrt(most_squared) / 2);
+    measured.around = rounded_up(std::sqrt(max_squared) / 2);
   });
 }
 

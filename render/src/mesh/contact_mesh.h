@@ -32,7 +32,7 @@ struct TriangleCell {
   std::array<std::int32_t, 3> neighbours;  ///< Triangle behind the edge from corner k to k + 1.
   /// Sharpness of its concave edges: sine of half the angle between the normals over the sharpest
   /// of them, in 1 / kSineUnit, rounded up; 0 if there is none, or the mesh has no edge planes.
-  std::uint16_t hollow = 0;
+  std::uint16_t concave = 0;
   /// Lean of the faces around its corners: the same sine for the largest angle to one of them, when
   /// the mesh was built; kSineUnit at a corner of more than `kFanMax` faces; 0 without edge planes.
   std::uint16_t around = 0;
@@ -45,7 +45,7 @@ struct TriangleCell {
 
   /// Returns the distance inside a concave edge's plane (m) up to which a tip `depth` (m) below the
   /// face may be next to the face, not under it; 0 if no edge is concave. Real-time: safe.
-  double beside_hollow(double depth) const noexcept { return depth * (hollow / kSineUnit); }
+  double concave_reach(double depth) const noexcept { return depth * (concave / kSineUnit); }
 };
 
 /// Options of building a contact mesh.
@@ -169,7 +169,7 @@ class THIMBLE_EXPORT ContactMesh {
   }
 
   /// Returns whether edge `k` is concave: whether the faces rise from it.
-  bool hollow_edge(std::int32_t triangle, std::size_t k) const noexcept {
+  bool concave_edge(std::int32_t triangle, std::size_t k) const noexcept {
     return edge_plane(triangle, k).n.dot(cell(triangle).face.n) < -TriangleCell::kFlat;
   }
 

@@ -25,10 +25,10 @@ double weight_of(const ContactMesh& mesh, NormalWeights weights, std::int32_t tr
 }  // namespace
 
 SmoothNormals::SmoothNormals(const ContactMesh& mesh, double crease_angle, NormalWeights weights,
-                             double hollow_crease_angle)
+                             double concave_crease_angle)
     : crease_angle_(crease_angle),
       crease_cosine_(math::cos(crease_angle)),
-      hollow_crease_angle_(std::min(crease_angle, hollow_crease_angle)),
+      concave_crease_angle_(std::min(crease_angle, concave_crease_angle)),
       weights_(weights) {
   const auto count = static_cast<std::size_t>(mesh.triangle_count());
   corners_.resize(count);
@@ -65,9 +65,9 @@ void SmoothNormals::find_crease(const ContactMesh& mesh, std::int32_t triangle,
   // The cosine is wrong by some 2^-53: if it is clear of the limit, it decides.
   constexpr double kClear = 1e-12;
   const double cosine = n.dot(behind);
-  const bool hollow = mesh.hollow_edge(triangle, k);
-  const double limit = hollow ? hollow_crease_angle_ : crease_angle_;
-  const double limit_cosine = hollow ? math::cos(hollow_crease_angle_) : crease_cosine_;
+  const bool concave = mesh.concave_edge(triangle, k);
+  const double limit = concave ? concave_crease_angle_ : crease_angle_;
+  const double limit_cosine = concave ? math::cos(concave_crease_angle_) : crease_cosine_;
   const bool clear = std::abs(cosine - limit_cosine) > kClear;
   const bool sharp = clear ? cosine < limit_cosine : corner_angle(n, behind) > limit;
   const auto bit = static_cast<std::uint8_t>(1U << k);

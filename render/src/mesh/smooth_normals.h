@@ -19,11 +19,11 @@ inline constexpr double kCreaseAngle = std::numbers::pi / 3;
 
 /// The maximum crease angle of concave edges, whatever angle is set for others. Below concave
 /// faces, depth and turning normal are the force of a potential only to the square of the angle.
-/// Beyond this angle a hand may oscillate in the groove (../track/hollows.md).
-inline constexpr double kHollowCreaseAngle = kCreaseAngle;
+/// Beyond this angle a hand may oscillate in the groove (../track/grooves.md).
+inline constexpr double kConcaveCreaseAngle = kCreaseAngle;
 
 /// The same for shading in bands along the edges, where the normal turns within a band.
-inline constexpr double kHollowCreaseAngleOfBands = std::numbers::pi / 9;
+inline constexpr double kConcaveCreaseAngleOfBands = std::numbers::pi / 9;
 
 /// The normals for shading a mesh, at each corner of each triangle, and the crease flags of its
 /// edges.
@@ -35,11 +35,11 @@ inline constexpr double kHollowCreaseAngleOfBands = std::numbers::pi / 9;
 class THIMBLE_EXPORT SmoothNormals {
  public:
   /// Computes the normals of a mesh. At `crease_angle` = 0 all edges between faces that are not in
-  /// one plane are creases; at pi only concave edges above `hollow_crease_angle` are. Real-time:
+  /// one plane are creases; at pi only concave edges above `concave_crease_angle` are. Real-time:
   /// never from the servo thread.
   explicit SmoothNormals(const ContactMesh& mesh, double crease_angle = kCreaseAngle,
                          NormalWeights weights = NormalWeights::kFitted,
-                         double hollow_crease_angle = kHollowCreaseAngle);
+                         double concave_crease_angle = kConcaveCreaseAngle);
 
   /// Enables `refit`: 5 more bytes per triangle. Real-time: never from the servo thread.
   void prepare_refit(const ContactMesh& mesh);
@@ -86,7 +86,7 @@ class THIMBLE_EXPORT SmoothNormals {
 
   double crease_angle_;
   double crease_cosine_;
-  double hollow_crease_angle_;  // of concave edges
+  double concave_crease_angle_;  // of concave edges
   NormalWeights weights_;
   std::vector<std::array<Eigen::Vector3d, 3>> corners_;
   std::vector<std::uint8_t> creases_;  // bit k for edge k

@@ -14,19 +14,19 @@ using Eigen::Vector3d;
 
 /// A direction without stiffness counts as having this share of the whole [chosen], so that a force
 /// left in it by a turning normal has a finite energy.
-constexpr double kLeastShare = 0.01;
+constexpr double kStiffnessShareMin = 0.01;
 
 /// Minimum share of a force along its normal while models change [chosen].
-constexpr double kLeastPush = 0.2;
+constexpr double kPushMin = 0.2;
 
 /// Returns the energy that a force on springs can release, F K^-1 F / 2, J; infinite without
 /// springs. Convex in force and stiffness together, as the largest of F x - x K x / 2 over all x.
 double available(const Vector3d& force, const Matrix3d& stiffness) noexcept {
   // Corrected for springs along one line, the case of most surfaces.
-  const double least = kLeastShare * stiffness.trace();
+  const double least = kStiffnessShareMin * stiffness.trace();
   if (!(least > 0)) return force.isZero(0) ? 0 : std::numeric_limits<double>::infinity();
   const Matrix3d raised = stiffness + least * Matrix3d::Identity();
-  return 0.5 * (1 + kLeastShare) * force.dot(raised.inverse() * force);
+  return 0.5 * (1 + kStiffnessShareMin) * force.dot(raised.inverse() * force);
 }
 
 /// Removes the shear from a force. The rest is the part that begins and ends with the push along
@@ -69,7 +69,7 @@ driver::Result<std::unique_ptr<ModelTouch>> ModelTouch::make(const ModelSlot& sl
                   "set, and above 0 N/m; thimble tune prints the maximum for arm, loop and hand");
   }
   if (!(above(settings.jump) && settings.jump <= 1)) return refuse("jump", "above 0, at most 1");
-  if (!above(settings.jump_least)) return refuse("jump_least", "above 0 N");
+  if (!above(settings.min_jump)) return refuse("min_jump", "above 0 N");
   if (!above(settings.hold)) return refuse("hold", "above 0 s");
   if (!above(settings.fade)) return refuse("fade", "above 0 s");
   if (!(settings.late > 0 && settings.late <= settings.hold)) {
@@ -220,7 +220,7 @@ void ModelTouch::approach(const Vector3d& p_WT) noexcept {
   const double paid = energy_ * (1 + 1e-9);
   soften(goal, std::max(paid, available(force_, stiffness_)));
   const Vector3d change = goal - force_;
-  const double longest = std::max(settings_.jump * force_.norm(), settings_.jump_least);
+  const double longest = std::max(settings_.jump * force_.norm(), settings_.min_jump);
   const double length = change.norm();
   double share = length > longest ? longest / length : 1;
   // The account allows force_ + s change up to the larger root of a s^2 + b s + c = 0.
@@ -243,7 +243,7 @@ void ModelTouch::approach(const Vector3d& p_WT) noexcept {
   const double turn = std::max(share, settings_.jump);
   const Vector3d n_W = n_W_ + turn * (newest_.n_W - n_W_);
   const double size = n_W.norm(), pushed = force_.norm();
-  if (n_W.dot(force_) > kLeastPush * size * pushed) {
+  if (n_W.dot(force_) > kPushMin * size * pushed) {
     n_W_ = n_W / size;
   } else if (pushed > 0) {
     n_W_ = force_ / pushed;

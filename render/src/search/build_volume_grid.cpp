@@ -20,7 +20,7 @@ constexpr double kSideInEdges = 0.8;
 // Maximum words of the top and entries of lists per triangle, for any shape of surface.
 constexpr double kTopMax = 1.5;
 constexpr double kListedMax = 12;
-constexpr double kTopLeast = 4096;  // smaller savings are useless
+constexpr double kTopMin = 4096;  // smaller savings are useless
 
 template <class Surface>
 Corners corners_of(const Surface& surface, const SearchFrame& frame, std::size_t i) {
@@ -88,7 +88,7 @@ void choose_side(VolumeGrid::Parts& parts, const Surface& surface, const SearchF
   for (;;) {
     lay_out(parts, extent, side);
     const double top = static_cast<double>(parts.blocks[0]) * parts.blocks[1] * parts.blocks[2];
-    const bool small_top = top <= std::max(kTopMax * n, kTopLeast);
+    const bool small_top = top <= std::max(kTopMax * n, kTopMin);
     if (small_top && estimate_listed(surface, frame, count, side) <= kListedMax * n) return;
     side *= 1.25;
   }
@@ -186,15 +186,15 @@ void visit_volumes(const VolumeGrid::Parts& parts, const Corners& c, List list) 
 // Stores the corners of each list's triangles in groups of eight, relative to the middle of its
 // volume. `widest` is the maximum width of a triangle along an axis.
 template <class CornersOf>
-void put_side_by_side(VolumeGrid::Parts& parts, double widest, const CornersOf& corners_of_one) {
-  constexpr std::size_t kMost = EightTriangles::kMost;
+void fill_lanes(VolumeGrid::Parts& parts, double widest, const CornersOf& corners_of_one) {
+  constexpr std::size_t kCapacity = EightTriangles::kCapacity;
   const double farthest = parts.side * (0.5 + kGridRoom) + widest;
   parts.per_unit = EightTriangles::kFarthestUnit / farthest;
   std::uint32_t eights = 0;
   for (std::size_t v = 0; v + 1 < parts.begins.size(); ++v) {
     parts.begins[v].eight = eights;
     const std::uint32_t count = parts.begins[v + 1].triangle - parts.begins[v].triangle;
-    eights += static_cast<std::uint32_t>((count + kMost - 1) / kMost);
+    eights += static_cast<std::uint32_t>((count + kCapacity - 1) / kCapacity);
   }
   parts.eights.resize(eights);
   const auto put = [&](std::size_t v, const Vector3d& middle) {
@@ -202,7 +202,7 @@ void put_side_by_side(VolumeGrid::Parts& parts, double widest, const CornersOf& 
     for (std::size_t i = 0; begin.triangle + i < parts.begins[v + 1].triangle; ++i) {
       Corners corners = corners_of_one(parts.triangles[begin.triangle + i]);
       for (Vector3d& corner : corners) corner = parts.per_unit * (corner - middle);
-      parts.eights[begin.eight + i / kMost].set(i % kMost, corners);
+      parts.eights[begin.eight + i / kCapacity].set(i % kCapacity, corners);
     }
   };
   std::size_t place = 0;
@@ -279,7 +279,7 @@ VolumeGrid build_volume_grid(const Surface& surface, const SearchFrame& frame) {
   for (auto entry = listed.rbegin(); entry != listed.rend(); ++entry) {
     parts.triangles[--parts.begins[entry->volume].triangle] = entry->triangle;
   }
-  put_side_by_side(parts, extent.widest, [&](std::int32_t t) {
+  fill_lanes(parts, extent.widest, [&](std::int32_t t) {
     return corners_of(surface, frame, static_cast<std::size_t>(t));
   });
   measure_emptiness(parts);

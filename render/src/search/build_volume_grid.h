@@ -6,8 +6,9 @@
 namespace thimble::render {
 
 /// Divides the box of a surface into volumes about as wide as its triangles. They are wider if the
-/// triangles differ so much that lists or the top would take more memory than a few words per
-/// triangle. `Surface` is ContactMesh or PackedSurface. Real-time: never from the servo thread.
+/// sizes of the triangles vary widely; otherwise lists or the top would take more memory than a few
+/// words per triangle. `Surface` is ContactMesh or PackedSurface. Real-time: never from the servo
+/// thread.
 template <class Surface>
 VolumeGrid build_volume_grid(const Surface& surface, const SearchFrame& frame);
 

@@ -13,10 +13,10 @@ namespace thimble::render {
 /// segment is tested against eight at a time, to drop those that it does not cross before any of
 /// them is read.
 struct alignas(16) EightTriangles {
-  static constexpr std::size_t kMost = 8;         ///< Maximum number of triangles.
+  static constexpr std::size_t kCapacity = 8;     ///< Maximum number of triangles.
   static constexpr double kFarthestUnit = 32700;  ///< Maximum of a corner from the middle, in
                                                   ///< units.
-  using Lanes = std::array<std::int16_t, kMost>;
+  using Lanes = std::array<std::int16_t, kCapacity>;
   std::array<Lanes, 3> x{}, y{}, z{};  ///< Coordinates of corner k, one triangle per lane.
 
   /// Stores a triangle in a lane. Corners are relative to the middle, in units, at most

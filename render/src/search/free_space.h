@@ -20,7 +20,7 @@ class FreeSpace {
                     const Eigen::Vector3d& p_to) noexcept {
     if (holds(p_from) && holds(p_to)) return {};
     const Entry entry = search.first_entry(p_from, p_to);
-    if (entry.triangle < 0) look_around(search, p_to, (p_to - p_from).squaredNorm());
+    if (entry.triangle < 0) measure(search, p_to, (p_to - p_from).squaredNorm());
     return entry;
   }
 
@@ -34,8 +34,8 @@ class FreeSpace {
  private:
   // If the ball lasts less than four ticks, computing it does not pay. It is skipped for some
   // ticks, at most 64, in which a hand at 0.3 mm per tick moves 20 mm.
-  void look_around(const ContactSearch& search, const Eigen::Vector3d& p,
-                   double step_squared) noexcept {
+  void measure(const ContactSearch& search, const Eigen::Vector3d& p,
+               double step_squared) noexcept {
     if (wait_ > 0) {
       --wait_;
       return;

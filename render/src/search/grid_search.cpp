@@ -79,13 +79,13 @@ SegmentInUnits in_units(const Test& segment, const VolumeGrid& grid) noexcept {
 // a bit for each lane with a triangle, whose number is triangles[lane].
 template <class Visit>
 inline void visit_eights(const VolumeList& list, Visit visit) noexcept {
-  constexpr std::size_t kMost = EightTriangles::kMost;
+  constexpr std::size_t kCapacity = EightTriangles::kCapacity;
   // Prefetched while the corners are tested.
   __builtin_prefetch(list.triangles.data());
   const std::size_t count = list.triangles.size();
-  for (std::size_t i = 0; i < count; i += kMost) {
-    const unsigned there = count - i < kMost ? (1u << (count - i)) - 1 : 0xffu;
-    visit(list.eights[i / kMost], there, list.triangles.data() + i);
+  for (std::size_t i = 0; i < count; i += kCapacity) {
+    const unsigned there = count - i < kCapacity ? (1u << (count - i)) - 1 : 0xffu;
+    visit(list.eights[i / kCapacity], there, list.triangles.data() + i);
   }
 }
 
@@ -269,7 +269,7 @@ inline SurfacePoint GridSearch<Surface>::find_closest(const Vector3d& p_W,
         near &= kWide ? lanes_avx2::nearer_of_eight(nearest, seen.data(), eight)
                       : nearer_of_eight(nearest, seen, eight);
       }
-      std::array<std::int32_t, EightTriangles::kMost> fresh;
+      std::array<std::int32_t, EightTriangles::kCapacity> fresh;
       std::size_t left = 0;
       for (; near != 0; near &= near - 1) {
         fresh[left] = triangles[std::countr_zero(near)];

@@ -8,9 +8,9 @@ namespace thimble::render {
 
 /// Numbers of nodes or triangles that a query has found on one level of a tree.
 struct NearList {
-  static constexpr std::size_t kMost = 64;  ///< Capacity.
-  std::array<std::uint32_t, kMost> numbers;
-  std::array<float, kMost> nears;  ///< Squared distances, for closest-point queries.
+  static constexpr std::size_t kCapacity = 64;  ///< Capacity.
+  std::array<std::uint32_t, kCapacity> numbers;
+  std::array<float, kCapacity> nears;  ///< Squared distances, for closest-point queries.
   std::size_t count = 0;
 };
 

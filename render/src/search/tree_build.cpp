@@ -15,7 +15,7 @@ std::vector<std::int32_t> order_of(const PackedSurface&, const SearchFrame&) {
 
 std::vector<std::int32_t> order_of(const ContactMesh& mesh, const SearchFrame& frame) {
   std::vector<PlacedIndex> items(static_cast<std::size_t>(mesh.triangle_count()));
-  in_halves(items.size(), [&](std::size_t begin, std::size_t end) noexcept {
+  parallel_split(items.size(), [&](std::size_t begin, std::size_t end) noexcept {
     for (std::size_t i = begin; i < end; ++i) {
       const auto t = static_cast<std::int32_t>(i);
       const Eigen::Vector3f middle = (corner_in(frame, mesh, t, 0) + corner_in(frame, mesh, t, 1) +

@@ -88,10 +88,10 @@ class TreeNodes {
 
 template <class BoxOf>
 BoxNode TreeNodes::made(std::size_t level, std::size_t number, BoxOf box_of) const noexcept {
-  constexpr std::size_t kMost = BoxNode::kChildrenMax;
-  std::array<LatticeAabb, kMost> boxes;
+  constexpr std::size_t kCapacity = BoxNode::kChildrenMax;
+  std::array<LatticeAabb, kCapacity> boxes;
   std::size_t count = 0;
-  for (std::size_t i = kMost * number; count < kMost && i < counts_[level]; ++i) {
+  for (std::size_t i = kCapacity * number; count < kCapacity && i < counts_[level]; ++i) {
     boxes[count++] = level == 0 ? box_of(i) : nodes_[begins_[level - 1] + i].box();
   }
   BoxNode node;
@@ -115,9 +115,11 @@ void TreeNodes::build(std::size_t things, BoxOf box_of, std::size_t room) {
   for (std::size_t level = 0; level < levels_; ++level) {
     all -= most[level + 1];
     begins_[level] = static_cast<std::uint32_t>(all);
-    in_halves(counts_[level + 1], [this, all, level, &box_of](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) nodes_[all + i] = made(level, i, box_of);
-    });
+    parallel_split(counts_[level + 1],
+                   [this, all, level, &box_of](std::size_t begin, std::size_t end) {
+                     for (std::size_t i = begin; i < end; ++i)
+                       nodes_[all + i] = made(level, i, box_of);
+                   });
   }
 }
 

@@ -28,7 +28,7 @@ void TreeSearch<Surface>::visit_reached(const Vector3d& from, const Vector3d& wa
   if (wide_ ? lanes_avx2::list_near(nodes_, *surface_, part, near)
             : lanes_plain::list_near(nodes_, *surface_, part, near)) {
     if (near.count == 0) return;
-    std::array<std::int32_t, NearList::kMost> list;
+    std::array<std::int32_t, NearList::kCapacity> list;
     for (std::size_t i = 0; i < near.count; ++i) list[i] = triangle_at(near.numbers[i]);
     visit(std::span<const std::int32_t>(list.data(), near.count));
     return;

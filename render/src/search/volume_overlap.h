@@ -32,8 +32,8 @@ class VolumeOverlap {
         // Points to the inside of the triangle as seen along the axis.
         e.u = -turn * edge[v];
         e.v = turn * edge[u];
-        e.least = e.u * a[u] + e.v * a[v] - half * (std::abs(e.u) + std::abs(e.v)) -
-                  kRounding * size * (size + kPlaces * side);
+        e.min = e.u * a[u] + e.v * a[v] - half * (std::abs(e.u) + std::abs(e.v)) -
+                kRounding * size * (size + kPlaces * side);
       }
     }
   }
@@ -43,7 +43,7 @@ class VolumeOverlap {
     for (int axis = 0; axis < 3; ++axis) {
       const double u = middle[(axis + 1) % 3], v = middle[(axis + 2) % 3];
       for (const Edge& e : edges_[static_cast<std::size_t>(axis)]) {
-        if (!(e.u * u + e.v * v >= e.least)) return false;
+        if (!(e.u * u + e.v * v >= e.min)) return false;
       }
     }
     return true;
@@ -54,7 +54,7 @@ class VolumeOverlap {
   static constexpr double kRounding = 0x1p-48;
   static constexpr double kPlaces = 0x1p13;
   struct Edge {
-    double u = 0, v = 0, least = 0;
+    double u = 0, v = 0, min = 0;
   };
   Eigen::Vector3d normal_;
   double plane_ = 0, reach_ = 0;

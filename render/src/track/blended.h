@@ -5,7 +5,7 @@
 
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
-#include "mesh/triangle_foot.h"
+#include "mesh/triangle_place.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/surface/surface_response.h"
@@ -43,7 +43,7 @@ class Blended {
     state_ = contact_.update(state);
     if (!state_.touching) return state_;
     const SurfacePlace& held = contact_.held();
-    if (held.triangle >= 0 && on_hollow_crease(mesh(), *normals_, held)) return state_;
+    if (held.triangle >= 0 && on_concave_crease(mesh(), *normals_, held)) return state_;
     const auto weights = contact_.weights(state.p_WT);
     state_.n_W = shading_.normal(mesh(), *normals_, state_.triangle, weights);
     state_.depth = depth_.depth(mesh(), *normals_, state_.triangle, weights, state_.depth);
@@ -64,21 +64,22 @@ class Blended {
 
   /// Returns the surface point of the tip at `p_WT` (W, m), with the felt normal
   /// (surface_response.h). Real-time: safe.
-  SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
+  ClosestSurfacePoint closest(const Eigen::Vector3d& p_WT) const noexcept {
     const SurfacePlace& held = contact_.held();
-    const bool by_crease = held.triangle >= 0 && on_hollow_crease(mesh(), *normals_, held);
-    SurfaceFoot foot;
+    const bool by_crease = held.triangle >= 0 && on_concave_crease(mesh(), *normals_, held);
+    ClosestSurfacePoint closest;
     if (by_crease) {
-      foot = contact_.foot(p_WT);
-    } else if constexpr (Contact::kTellsFoot) {
-      const TriangleFoot place = contact_.triangle_foot(p_WT);
-      foot = contact_.foot_at(place);
-      foot.fall_W = depth_.fall(mesh(), *normals_, place, contact_.state().depth, foot.fall_W);
+      closest = contact_.closest(p_WT);
+    } else if constexpr (Contact::kHasTrianglePlace) {
+      const TrianglePlace place = contact_.triangle_place(p_WT);
+      closest = contact_.closest_at(place);
+      closest.fall_W =
+          depth_.fall(mesh(), *normals_, place, contact_.state().depth, closest.fall_W);
     } else {
-      foot = contact_.foot_on_triangle(p_WT);
+      closest = contact_.closest_on_triangle(p_WT);
     }
-    foot.n_M = state_.n_W;
-    return foot;
+    closest.n_M = state_.n_W;
+    return closest;
   }
 
   const Contact& contact() const noexcept { return contact_; }

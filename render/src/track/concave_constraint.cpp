@@ -40,41 +40,41 @@ void name_place(const ContactMesh& mesh, std::int32_t wanted, SurfacePlace& plac
 
 }  // namespace
 
-HollowHold hold_in_hollow(const ContactMesh& mesh, std::int32_t triangle,
+GrooveHold hold_in_groove(const ContactMesh& mesh, std::int32_t triangle,
                           const Vector3d& p_WT) noexcept {
   const Rest rest = descend(mesh, {.triangle = triangle}, p_WT);
-  HollowHold hold;
+  GrooveHold hold;
   if (!below(mesh, rest, p_WT)) return hold;
   hold.holds = true;
-  hold.place = rest.foot.place;
+  hold.place = rest.closest.place;
   hold.hops = rest.hops;
-  hold.p_WH = rest.foot.p_OP;
+  hold.p_WH = rest.closest.p_OP;
   hold.n_W = mesh.cell(hold.place.triangle).face.n;
   if (hold.place.on == SurfacePlace::On::kFace) {
     hold.depth = std::max(mesh.depth(hold.place.triangle, p_WT), 0.0);
     return hold;
   }
   name_place(mesh, triangle, hold.place);
-  hold.depth = std::sqrt(rest.foot.distance_squared);
+  hold.depth = std::sqrt(rest.closest.distance_squared);
   if (hold.depth > kDirectionMin * mesh.depth_rounding()) {
     hold.n_W = (hold.p_WH - p_WT) / hold.depth;
   }
   return hold;
 }
 
-bool on_hollow_crease(const ContactMesh& mesh, const SmoothNormals& normals,
-                      const SurfacePlace& place) noexcept {
-  const auto hollow_crease = [&](std::int32_t t, std::size_t k) {
-    return normals.crease(t, k) && mesh.hollow_edge(t, k);
+bool on_concave_crease(const ContactMesh& mesh, const SmoothNormals& normals,
+                       const SurfacePlace& place) noexcept {
+  const auto concave_crease = [&](std::int32_t t, std::size_t k) {
+    return normals.crease(t, k) && mesh.concave_edge(t, k);
   };
   if (place.on == SurfacePlace::On::kFace) return false;
-  if (place.on == SurfacePlace::On::kEdge) return hollow_crease(place.triangle, place.k);
+  if (place.on == SurfacePlace::On::kEdge) return concave_crease(place.triangle, place.k);
   const std::int32_t vertex = mesh.corners(place.triangle)[place.k];
   const auto fan = mesh.fan(vertex);
   return std::any_of(fan.begin(), fan.end(), [&](std::int32_t t) {
     const auto& corners = mesh.corners(t);
     const std::size_t k = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
-    return hollow_crease(t, k) || hollow_crease(t, (k + 2) % 3);
+    return concave_crease(t, k) || concave_crease(t, (k + 2) % 3);
   });
 }
 

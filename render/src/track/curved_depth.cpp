@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mesh/depth_below_hollow.h"
+#include "mesh/depth_below_concave.h"
 #include "mesh/surface_weights.h"
 
 namespace thimble::render {
@@ -22,22 +22,22 @@ double CurvedDepth::depth(const ContactMesh& mesh, const SmoothNormals& normals,
                           std::int32_t triangle, const Eigen::Vector3d& weights,
                           double below_mesh) const noexcept {
   const double height = height_above(mesh, normals, triangle, weights);
-  if (height < 0) return depth_below_hollow(below_mesh, -height);
+  if (height < 0) return depth_below_concave(below_mesh, -height);
   const double corrected = below_mesh + std::min(height, below_mesh);
   // Written so that NaN means no depth.
   return corrected > 0 ? corrected : 0;
 }
 
 Eigen::Vector3d CurvedDepth::fall(const ContactMesh& mesh, const SmoothNormals& normals,
-                                  const TriangleFoot& foot, double below_mesh,
+                                  const TrianglePlace& closest, double below_mesh,
                                   const Eigen::Vector3d& fall_of_mesh_W) const noexcept {
-  const std::int32_t triangle = foot.triangle;
-  const double height = height_above(mesh, normals, triangle, foot.weights);
+  const std::int32_t triangle = closest.triangle;
+  const double height = height_above(mesh, normals, triangle, closest.weights);
   const Eigen::Vector3d rising = height_slope(
       {mesh.position(triangle, 0), mesh.position(triangle, 1), mesh.position(triangle, 2)},
-      normals.corners(triangle), foot);
+      normals.corners(triangle), closest);
   if (height < 0) {
-    const HollowDepthChange change = change_below_hollow(below_mesh, -height);
+    const ConcaveDepthChange change = change_below_concave(below_mesh, -height);
     return change.per_depth * fall_of_mesh_W + change.per_gap * rising;
   }
   if (height < below_mesh) return fall_of_mesh_W - rising;

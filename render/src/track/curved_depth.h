@@ -5,7 +5,7 @@
 
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
-#include "mesh/triangle_foot.h"
+#include "mesh/triangle_place.h"
 
 namespace thimble::render {
 
@@ -24,7 +24,7 @@ struct MeshDepth {
     return below_mesh;
   }
   /// Returns `fall_of_mesh_W` unchanged.
-  Eigen::Vector3d fall(const ContactMesh&, const SmoothNormals&, const TriangleFoot&, double,
+  Eigen::Vector3d fall(const ContactMesh&, const SmoothNormals&, const TrianglePlace&, double,
                        const Eigen::Vector3d& fall_of_mesh_W) const noexcept {
     return fall_of_mesh_W;
   }
@@ -39,14 +39,14 @@ struct MeshDepth {
 /// for the first h and is exact from there on. If a mesh is so coarse that h is felt, halve the
 /// stiffness that is just stable, or use a finer mesh. Where h < 0 (concave), the force also begins
 /// softly where the tip enters the mesh. The depth is d^2 / 4|h| up to d = 2|h|, where it and its
-/// slope are those of d + h (`depth_below_hollow`).
+/// slope are those of d + h (`depth_below_concave`).
 struct CurvedDepth {
   double depth(const ContactMesh& mesh, const SmoothNormals& normals, std::int32_t triangle,
                const Eigen::Vector3d& weights, double below_mesh) const noexcept;
   /// Returns minus the gradient of `depth` by the tip's position (W). `foot` is the place of the
   /// tip, and `fall_of_mesh_W` minus the gradient of `below_mesh`.
   Eigen::Vector3d fall(const ContactMesh& mesh, const SmoothNormals& normals,
-                       const TriangleFoot& foot, double below_mesh,
+                       const TrianglePlace& closest, double below_mesh,
                        const Eigen::Vector3d& fall_of_mesh_W) const noexcept;
 };
 

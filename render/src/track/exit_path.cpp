@@ -119,39 +119,41 @@ bool on_edge(const ContactMesh& mesh, std::int32_t t, std::size_t k, const Vecto
   return !(edge.cross(p_OP - from).squaredNorm() > near * near * edge.squaredNorm());
 }
 
-ExitPath way_out_between_faces(const ContactMesh& mesh, const Foot& foot, double outside) noexcept {
+ExitPath exit_path_between_faces(const ContactMesh& mesh, const TriangleClosestPoint& closest,
+                                 double outside) noexcept {
   const double near = kOnEdge * outside;
-  const SurfacePlace& place = foot.place;
+  const SurfacePlace& place = closest.place;
   Normals normals(mesh);
   normals.add(place.triangle);
   for (std::size_t k = 0; k < 3; ++k) {
     const bool rests_on_edge = place.on == SurfacePlace::On::kEdge && place.k == k;
-    if (rests_on_edge || on_edge(mesh, place.triangle, k, foot.p_OP, near)) {
+    if (rests_on_edge || on_edge(mesh, place.triangle, k, closest.p_OP, near)) {
       normals.add(mesh.cell(place.triangle).neighbours[k]);
     }
     const std::int32_t vertex = mesh.corners(place.triangle)[k];
-    if (!((mesh.position(vertex) - foot.p_OP).squaredNorm() > near * near)) normals.add_fan(vertex);
+    if (!((mesh.position(vertex) - closest.p_OP).squaredNorm() > near * near))
+      normals.add_fan(vertex);
   }
   const Vector3d x = normals.away();
   const double sine = x.norm();
-  if (!(sine > kNotchMin)) return {foot.normal.normalized(), 2 * outside, false, false};
+  if (!(sine > kNotchMin)) return {closest.normal.normalized(), 2 * outside, false, false};
   return {x / sine, 2 * outside / sine, false, true};
 }
 
 }  // namespace
 
-ExitPath way_out(const ContactMesh& mesh, const Rest& rest) noexcept {
+ExitPath exit_path(const ContactMesh& mesh, const Rest& rest) noexcept {
   const double outside = kOutside * mesh.depth_rounding();
-  const Foot& foot = rest.foot;
+  const TriangleClosestPoint& closest = rest.closest;
   const double near = kOnEdge * outside;
-  const double normal_squared = foot.normal.squaredNorm();
-  const double beside = std::min({foot.beside[0], foot.beside[1], foot.beside[2]});
+  const double normal_squared = closest.normal.squaredNorm();
+  const double beside = std::min({closest.beside[0], closest.beside[1], closest.beside[2]});
   // Assumes all edges as long as the three together. This is conservative, and needs no root or
   // division.
-  const bool inside_face = foot.place.on == SurfacePlace::On::kFace &&
-                           beside * beside > near * near * foot.edges_squared * normal_squared;
-  if (inside_face) return {foot.normal / std::sqrt(normal_squared), 2 * outside, true, true};
-  return way_out_between_faces(mesh, foot, outside);
+  const bool inside_face = closest.place.on == SurfacePlace::On::kFace &&
+                           beside * beside > near * near * closest.edges_squared * normal_squared;
+  if (inside_face) return {closest.normal / std::sqrt(normal_squared), 2 * outside, true, true};
+  return exit_path_between_faces(mesh, closest, outside);
 }
 
 }  // namespace thimble::render

@@ -20,6 +20,6 @@ struct ExitPath {
 /// proxy is still outside. In a notch it is longer than on a face by one over the sine of half the
 /// notch's angle. Not sure below 0.5 degrees, and at vertices where no direction leads away from
 /// all faces. Real-time: safe; one triangle inside a face, else those at the point.
-ExitPath way_out(const ContactMesh& mesh, const Rest& rest) noexcept;
+ExitPath exit_path(const ContactMesh& mesh, const Rest& rest) noexcept;
 
 }  // namespace thimble::render

@@ -43,8 +43,8 @@ const ContactState& GodObjectContact::update(const driver::DeviceState& state) n
   return state_;
 }
 
-SurfaceFoot GodObjectContact::foot(const Vector3d&) const noexcept {
-  return resting_foot(*mesh_, place_, state_);
+ClosestSurfacePoint GodObjectContact::closest(const Vector3d&) const noexcept {
+  return resting_closest_point(*mesh_, place_, state_);
 }
 
 void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
@@ -57,13 +57,13 @@ void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
   for (int lift = 0; lift <= kLiftsMax; ++lift) {
     rest = descend(*mesh_, place_, p_OT);
     hops = static_cast<std::uint16_t>(hops + rest.hops);
-    way = way_out(*mesh_, rest);
+    way = exit_path(*mesh_, rest);
     pressed = rest.settled && below(*mesh_, rest, p_OT);
     // A lift that ended no nearer: tip and surface coincide within rounding.
-    if (pressed || !(rest.foot.distance_squared < nearest)) break;
-    nearest = rest.foot.distance_squared;
+    if (pressed || !(rest.closest.distance_squared < nearest)) break;
+    nearest = rest.closest.distance_squared;
     ++counters_.lifts;
-    const Entry entry = search_->first_entry(rest.foot.p_OP + way.length * way.n_O, p_OT);
+    const Entry entry = search_->first_entry(rest.closest.p_OP + way.length * way.n_O, p_OT);
     if (entry.triangle < 0) {
       state_.hops = hops;
       // Where a surface passes through itself, the proxy was inside another part of it.
@@ -72,7 +72,7 @@ void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
       place_ = {.triangle =
                     search_->closest(p_OT, std::numeric_limits<double>::infinity()).triangle};
       rest = descend(*mesh_, place_, p_OT);
-      way = way_out(*mesh_, rest);
+      way = exit_path(*mesh_, rest);
       pressed = through_itself = true;
       break;
     }
@@ -86,7 +86,7 @@ void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
     place_ = {.triangle = entry.triangle};
   }
 
-  const Vector3d p_OP = rest.foot.p_OP + way.length * way.n_O;
+  const Vector3d p_OP = rest.closest.p_OP + way.length * way.n_O;
   // Held only where no direction is known to lead out and the exact result is "inside".
   if (way.sure || !search_->inside(p_OP)) {
     p_OP_ = p_OP;
@@ -95,19 +95,19 @@ void GodObjectContact::follow(const Vector3d& p_OT) noexcept {
   }
   Vector3d n_O = way.n_O;
   if (pressed) {
-    const Vector3d p_TP_O = rest.foot.p_OP - p_OT;
-    if (rest.settled && rest.foot.place.on == SurfacePlace::On::kFace && !through_itself) {
+    const Vector3d p_TP_O = rest.closest.p_OP - p_OT;
+    if (rest.settled && rest.closest.place.on == SurfacePlace::On::kFace && !through_itself) {
       // Within rounding of the edge of a face, the way out also leads away from the adjacent faces.
-      if (!way.from_face) n_O = rest.foot.normal.normalized();
+      if (!way.from_face) n_O = rest.closest.normal.normalized();
       state_.depth = n_O.dot(p_TP_O);
     } else {
-      state_.depth = std::sqrt(rest.foot.distance_squared);
+      state_.depth = std::sqrt(rest.closest.distance_squared);
       if (state_.depth > kDirectionMin * mesh_->depth_rounding()) n_O = p_TP_O / state_.depth;
     }
   }
-  place_ = rest.foot.place;
+  place_ = rest.closest.place;
   state_.touching = true;
-  state_.triangle = rest.foot.place.triangle;
+  state_.triangle = rest.closest.place.triangle;
   state_.n_W = n_O;
   state_.p_WP = p_OP_;
   state_.hops = hops;

@@ -104,7 +104,7 @@ class THIMBLE_EXPORT GodObjectContact {
 
   /// Returns the surface point of the proxy and its derivative by the tip: over a face, along an
   /// edge, zero in a corner (surface_response.h). Real-time: safe.
-  SurfaceFoot foot(const Eigen::Vector3d& p_OT) const noexcept;
+  ClosestSurfacePoint closest(const Eigen::Vector3d& p_OT) const noexcept;
 
   const GodObjectCounters& counters() const noexcept { return counters_; }
   const ContactMesh& mesh() const noexcept { return *mesh_; }

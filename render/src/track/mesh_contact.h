@@ -109,32 +109,35 @@ class THIMBLE_EXPORT TrackedContact {
 
   /// Returns the surface point of the tip at `p_WT` (W, m) (surface_response.h). Precondition: as
   /// of `weights`. Real-time: safe.
-  SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
-    if (held().triangle >= 0) return resting_foot(mesh(), held(), state_);
-    return foot_on_triangle(p_WT);
+  ClosestSurfacePoint closest(const Eigen::Vector3d& p_WT) const noexcept {
+    if (held().triangle >= 0) return resting_closest_point(mesh(), held(), state_);
+    return closest_on_triangle(p_WT);
   }
   /// Returns the surface point on the active triangle, even if an edge next to it holds the tip.
   /// Precondition: as of `weights`. Real-time: safe.
-  SurfaceFoot foot_on_triangle(const Eigen::Vector3d& p_WT) const noexcept {
-    if constexpr (kTellsFoot) {
-      return foot_at(tracker_.foot(p_WT));
+  ClosestSurfacePoint closest_on_triangle(const Eigen::Vector3d& p_WT) const noexcept {
+    if constexpr (kHasTrianglePlace) {
+      return closest_at(tracker_.closest(p_WT));
     } else {
-      return flat_foot(state_);
+      return flat_closest_point(state_);
     }
   }
 
   /// Whether the tracker provides the weights of the corners and their derivatives.
-  static constexpr bool kTellsFoot = requires(const Tracker& tracker, const Eigen::Vector3d& p) {
-    tracker.foot(p);
+  static constexpr bool kHasTrianglePlace =
+      requires(const Tracker& tracker, const Eigen::Vector3d& p) {
+    tracker.closest(p);
   };
   /// Returns the place on the active triangle with its derivatives. Precondition: as of `weights`.
   /// Real-time: safe.
-  TriangleFoot triangle_foot(const Eigen::Vector3d& p_WT) const noexcept requires kTellsFoot {
-    return tracker_.foot(p_WT);
+  TrianglePlace triangle_place(const Eigen::Vector3d& p_WT) const noexcept requires
+      kHasTrianglePlace {
+    return tracker_.closest(p_WT);
   }
   /// Returns the surface point at such a place. Real-time: safe.
-  SurfaceFoot foot_at(const TriangleFoot& place) const noexcept requires kTellsFoot {
-    const FootPath path = path_of(mesh(), place);
+  ClosestSurfacePoint closest_at(const TrianglePlace& place) const noexcept requires
+      kHasTrianglePlace {
+    const MovingPoint path = path_of(mesh(), place);
     return {.p_M = path.p_W, .n_M = state_.n_W, .J_MT = path.J, .fall_W = tracker_.fall(place)};
   }
 
@@ -167,8 +170,8 @@ class THIMBLE_EXPORT TrackedContact {
   // Rare cases.
   [[gnu::noinline, gnu::cold]] const ContactState& lose(const Eigen::Vector3d& p_WT,
                                                         std::uint16_t hops) noexcept;
-  [[gnu::noinline, gnu::cold]] const ContactState& go_round(const Eigen::Vector3d& p_WT,
-                                                            const TrackerStep& step) noexcept;
+  [[gnu::noinline, gnu::cold]] const ContactState& retrack(const Eigen::Vector3d& p_WT,
+                                                           const TrackerStep& step) noexcept;
   [[gnu::noinline, gnu::cold]] const ContactState& stay_behind(
       const Eigen::Vector3d& p_WT) noexcept;
   bool hold_behind(const Eigen::Vector3d& p_WT) noexcept;
@@ -220,7 +223,7 @@ const ContactState& TrackedContact<Tracker>::update(const driver::DeviceState& s
     return lose(p_WT, step.hops);
   if constexpr (kHoldsBehind) {
     if (step.hops > 0 && !(tracker_.normal().dot(state_.n_W) > kBeyondRim)) [[unlikely]]
-      return go_round(p_WT, step);
+      return retrack(p_WT, step);
   }
   report(p_WT, step);
   return state_;
@@ -253,8 +256,8 @@ const ContactState& TrackedContact<Tracker>::lose(const Eigen::Vector3d& p_WT,
 // The tracker has crossed a rim in one tick. Either the tip went around it too, or it has passed
 // through the part.
 template <class Tracker>
-const ContactState& TrackedContact<Tracker>::go_round(const Eigen::Vector3d& p_WT,
-                                                      const TrackerStep& step) noexcept {
+const ContactState& TrackedContact<Tracker>::retrack(const Eigen::Vector3d& p_WT,
+                                                     const TrackerStep& step) noexcept {
   if (search_->inside(p_WT) || !hold_behind(p_WT)) report(p_WT, step);
   return state_;
 }

@@ -13,7 +13,7 @@
 
 #include "mesh/contact_mesh.h"
 #include "mesh/surface_weights.h"
-#include "mesh/triangle_foot.h"
+#include "mesh/triangle_place.h"
 #include "search/contact_search.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/render/contact_state.h"
@@ -56,7 +56,7 @@ class MovingContact {
 
   /// Returns the material point of the tip at `p_WT` (W, m) (surface_response.h). Precondition:
   /// keep_material() was called, and the last `update` touches. Real-time: safe.
-  SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
+  ClosestSurfacePoint closest(const Eigen::Vector3d& p_WT) const noexcept {
     const auto first = [this](std::int32_t vertex) {
       return first_places_[static_cast<std::size_t>(vertex)];
     };
@@ -64,8 +64,9 @@ class MovingContact {
     const auto& corners = mesh().corners(triangle);
     const std::array<Eigen::Vector3d, 3> places{first(corners[0]), first(corners[1]),
                                                 first(corners[2])};
-    const SurfaceFoot now = foot_of(contact_, p_WT);
-    const FootPath path = carried_back(mesh(), triangle, places, {.p_W = now.p_M, .J = now.J_MT});
+    const ClosestSurfacePoint now = closest_point_of(contact_, p_WT);
+    const MovingPoint path =
+        carried_back(mesh(), triangle, places, {.p_W = now.p_M, .J = now.J_MT});
     return {.p_M = path.p_W,
             .n_M = (places[1] - places[0]).cross(places[2] - places[0]).stableNormalized(),
             .J_MT = path.J,

@@ -18,7 +18,7 @@ MovingMesh::MovingMesh(ContactMesh mesh, const MovingMeshOptions& options)
   around_.reserve(count);
   marks_.assign(count, 0);
   if (!options.normals) return;
-  normals_.emplace(mesh_, options.crease_angle, *options.normals, options.hollow_crease_angle);
+  normals_.emplace(mesh_, options.crease_angle, *options.normals, options.concave_crease_angle);
   normals_->prepare_refit(mesh_);
 }
 

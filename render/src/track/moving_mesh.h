@@ -23,7 +23,7 @@ struct MovingMeshOptions {
   std::optional<NormalWeights> normals = {};
   double crease_angle = kCreaseAngle;  ///< rad
   /// Crease angle of concave edges at most, rad (smooth_normals.h).
-  double hollow_crease_angle = kHollowCreaseAngle;
+  double concave_crease_angle = kConcaveCreaseAngle;
 };
 
 /// Result of moving vertices.

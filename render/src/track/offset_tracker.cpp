@@ -24,7 +24,7 @@ constexpr int kRoundsMax = 12;
 constexpr double kWeightRounding = 1e-13;
 
 // Faces that lean by more, as a cosine, are the back of a thin part (as in SurfaceTracker).
-constexpr double kFacesAway = -0.25;
+constexpr double kOppositeFace = -0.25;
 
 Vector3d weighted(const std::array<Vector3d, 3>& corners, const Vector3d& weights) noexcept {
   return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
@@ -33,17 +33,17 @@ Vector3d weighted(const std::array<Vector3d, 3>& corners, const Vector3d& weight
 // Distance of the tip inside each edge, as a share of the triangle's height over it; negative
 // beyond the edge.
 std::array<double, 3> edge_shares(const ContactMesh& mesh, const SmoothNormals& normals,
-                                  std::int32_t triangle, const OffsetFoot& foot,
+                                  std::int32_t triangle, const OffsetTrianglePlace& closest,
                                   const Vector3d& p_WT) noexcept {
   std::array<double, 3> shares{};
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t opposite = (k + 2) % 3;
-    if (normals.crease(triangle, k) || !foot.found) {
+    if (normals.crease(triangle, k) || !closest.found) {
       const Plane plane = mesh.edge_plane(triangle, k);
       const double height = plane.distance(mesh.position(triangle, opposite) - mesh.origin());
       shares[k] = plane.distance(p_WT - mesh.origin()) / std::abs(height);
     } else {
-      shares[k] = foot.weights[static_cast<Eigen::Index>(opposite)];
+      shares[k] = closest.weights[static_cast<Eigen::Index>(opposite)];
     }
   }
   return shares;
@@ -51,9 +51,9 @@ std::array<double, 3> edge_shares(const ContactMesh& mesh, const SmoothNormals& 
 
 }  // namespace
 
-OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normals,
-                            std::int32_t triangle, const Vector3d& p_WT,
-                            double depth_near) noexcept {
+OffsetTrianglePlace find_offset_triangle_place(const ContactMesh& mesh,
+                                               const SmoothNormals& normals, std::int32_t triangle,
+                                               const Vector3d& p_WT, double depth_near) noexcept {
   const auto& n = normals.corners(triangle);
   const Vector3d& face_n = mesh.cell(triangle).face.n;
   // Relative to a corner: far from the world's origin the differences are still exact.
@@ -61,32 +61,32 @@ OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normal
   const Vector3d side_1 = mesh.position(triangle, 1) - x;
   const Vector3d side_2 = mesh.position(triangle, 2) - x;
   const Vector3d p = p_WT - x;
-  OffsetFoot foot;
-  foot.depth = depth_near;
+  OffsetTrianglePlace closest;
+  closest.depth = depth_near;
   for (int round = 0; round < kRoundsMax; ++round) {
-    const Vector3d e_1 = side_1 - foot.depth * (n[1] - n[0]);
-    const Vector3d e_2 = side_2 - foot.depth * (n[2] - n[0]);
-    const Vector3d r = p + foot.depth * n[0];
+    const Vector3d e_1 = side_1 - closest.depth * (n[1] - n[0]);
+    const Vector3d e_2 = side_2 - closest.depth * (n[2] - n[0]);
+    const Vector3d r = p + closest.depth * n[0];
     const Vector3d area = e_1.cross(e_2);
     const double scale = 1 / area.squaredNorm();
-    foot.weights[1] = r.cross(e_2).dot(area) * scale;
-    foot.weights[2] = e_1.cross(r).dot(area) * scale;
-    foot.weights[0] = 1 - foot.weights[1] - foot.weights[2];
+    closest.weights[1] = r.cross(e_2).dot(area) * scale;
+    closest.weights[2] = e_1.cross(r).dot(area) * scale;
+    closest.weights[0] = 1 - closest.weights[1] - closest.weights[2];
     // Moving along the offset plane does not change the height, so only the sinking matters.
-    const double sinking = weighted(n, foot.weights).dot(area);
+    const double sinking = weighted(n, closest.weights).dot(area);
     // A triangle that has shrunk to a point and grown again faces the same way, but its sides are
     // reversed.
     const bool turned_over =
         !(sinking > 0 && area.dot(face_n) > 0 && e_1.dot(side_1) > 0 && e_2.dot(side_2) > 0);
-    if (turned_over) return foot;
+    if (turned_over) return closest;
     const double change = -r.dot(area) / sinking;
-    foot.depth += change;
+    closest.depth += change;
     if (std::abs(change) <= mesh.depth_rounding()) {
-      foot.found = true;
-      return foot;
+      closest.found = true;
+      return closest;
     }
   }
-  return foot;
+  return closest;
 }
 
 OffsetTracker::OffsetTracker(const ContactMesh& mesh, const ContactSearch& search,
@@ -99,12 +99,12 @@ OffsetTracker::OffsetTracker(const ContactMesh& mesh, const ContactSearch& searc
 
 void OffsetTracker::start(std::int32_t triangle) noexcept {
   active_ = triangle;
-  foot_ = {};
+  closest_ = {};
 }
 
 void OffsetTracker::hold_by_face(std::int32_t triangle, const Vector3d& p_WT) noexcept {
   start(triangle);
-  foot_.depth = mesh_->depth(triangle, p_WT);
+  closest_.depth = mesh_->depth(triangle, p_WT);
   held_.triangle = -1;
   weights_ = within_triangle(projected_weights(*mesh_, triangle, p_WT));
   n_W_ = mesh_->cell(triangle).face.n;
@@ -123,57 +123,59 @@ TrackerStep OffsetTracker::follow(const Vector3d& p_WT) noexcept {
   const Walk walked = walk(p_WT);
   step.hops = walked.ended ? walked.hops : walk_on(p_WT, walked);
   // Written so that NaN means no contact.
-  if (!(foot_.depth >= 0) && !find_again(p_WT)) return step;
+  if (!(closest_.depth >= 0) && !find_again(p_WT)) return step;
   step.touching = true;
   held_.triangle = -1;
   // No cell holds the tip: usually it is in the gap below a concave crease.
-  if (foot_.weights.minCoeff() < -kWeightRounding && hold(p_WT, step)) return step;
-  weights_ = within_triangle(foot_.weights);
+  if (closest_.weights.minCoeff() < -kWeightRounding && hold(p_WT, step)) return step;
+  weights_ = within_triangle(closest_.weights);
   const Vector3d sum = weighted(normals_->corners(active_), weights_);
   const double length = sum.norm();
   n_W_ = length > 0 ? Vector3d(sum / length) : mesh_->cell(active_).face.n;
   // The corners sink along unit normals; the interpolated normal between them is shorter.
-  step.depth = foot_.found ? foot_.depth * length : foot_.depth;
+  step.depth = closest_.found ? closest_.depth * length : closest_.depth;
   return step;
 }
 
 bool OffsetTracker::hold(const Vector3d& p_WT, TrackerStep& step) noexcept {
-  const HollowHold hold = hold_in_hollow(*mesh_, active_, p_WT);
-  if (!hold.holds || !on_hollow_crease(*mesh_, *normals_, hold.place)) return false;
+  const GrooveHold hold = hold_in_groove(*mesh_, active_, p_WT);
+  if (!hold.holds || !on_concave_crease(*mesh_, *normals_, hold.place)) return false;
   active_ = hold.place.triangle;
   held_ = hold.place;
   step.hops = static_cast<std::uint16_t>(step.hops + hold.hops);
   step.depth = hold.depth;
   n_W_ = hold.n_W;
   weights_ = within_triangle(projected_weights(*mesh_, active_, hold.p_WH));
-  foot_.depth = hold.depth;
+  closest_.depth = hold.depth;
   return true;
 }
 
-OffsetFoot OffsetTracker::foot_on(std::int32_t triangle, const Vector3d& p_WT) const noexcept {
-  OffsetFoot foot = find_offset_foot(*mesh_, *normals_, triangle, p_WT, foot_.depth);
+OffsetTrianglePlace OffsetTracker::closest_on(std::int32_t triangle,
+                                              const Vector3d& p_WT) const noexcept {
+  OffsetTrianglePlace closest =
+      find_offset_triangle_place(*mesh_, *normals_, triangle, p_WT, closest_.depth);
   // Again from the surface: the depth of one triangle may be beyond the curvature of the next one.
-  if (!foot.found) foot = find_offset_foot(*mesh_, *normals_, triangle, p_WT, 0);
-  if (!foot.found) {
-    foot.weights = edge_plane_weights(*mesh_, triangle, p_WT);
-    foot.depth = mesh_->depth(triangle, p_WT);
+  if (!closest.found) closest = find_offset_triangle_place(*mesh_, *normals_, triangle, p_WT, 0);
+  if (!closest.found) {
+    closest.weights = edge_plane_weights(*mesh_, triangle, p_WT);
+    closest.depth = mesh_->depth(triangle, p_WT);
   }
-  return foot;
+  return closest;
 }
 
 OffsetTracker::Walk OffsetTracker::walk(const Vector3d& p_WT) noexcept {
   TriangleSet<kHopsMax> visited;
   std::int32_t best = active_;
-  OffsetFoot best_foot;
+  OffsetTrianglePlace best_place;
   double best_share = -std::numeric_limits<double>::infinity();
   for (std::uint16_t hops = 0; hops < kHopsMax; ++hops) {
-    foot_ = foot_on(active_, p_WT);
-    const auto shares = edge_shares(*mesh_, *normals_, active_, foot_, p_WT);
+    closest_ = closest_on(active_, p_WT);
+    const auto shares = edge_shares(*mesh_, *normals_, active_, closest_, p_WT);
     const double least = std::min({shares[0], shares[1], shares[2]});
     if (!(least < -kWeightRounding)) return {.hops = hops, .ended = true, .last = active_};
     if (least > best_share) {
       best = active_;
-      best_foot = foot_;
+      best_place = closest_;
       best_share = least;
     }
     visited.add(active_);
@@ -189,14 +191,14 @@ OffsetTracker::Walk OffsetTracker::walk(const Vector3d& p_WT) noexcept {
     if (next < 0) {
       ++counters_.cycles;
       active_ = best;
-      foot_ = best_foot;
+      closest_ = best_place;
       return {.hops = hops, .ended = true, .last = best};
     }
     active_ = next;
   }
   ++counters_.long_walks;
   const std::int32_t last = std::exchange(active_, best);
-  foot_ = best_foot;
+  closest_ = best_place;
   return {.hops = kHopsMax, .ended = false, .last = last};
 }
 
@@ -205,16 +207,16 @@ OffsetTracker::Walk OffsetTracker::walk(const Vector3d& p_WT) noexcept {
 // again.
 std::uint16_t OffsetTracker::walk_on(const Vector3d& p_WT, const Walk& before) noexcept {
   const std::int32_t best = active_;
-  const OffsetFoot best_foot = foot_;
+  const OffsetTrianglePlace best_place = closest_;
   const SurfacePoint hit = search_->closest(p_WT, std::numeric_limits<double>::infinity());
   const bool faces_alike =
       hit.triangle >= 0 &&
-      mesh_->cell(hit.triangle).face.n.dot(mesh_->cell(best).face.n) > kFacesAway;
+      mesh_->cell(hit.triangle).face.n.dot(mesh_->cell(best).face.n) > kOppositeFace;
   // The way around a thin part: the next tick continues from here.
   active_ = faces_alike ? hit.triangle : before.last;
-  foot_.depth = best_foot.depth;
+  closest_.depth = best_place.depth;
   if (!faces_alike) {
-    foot_ = foot_on(active_, p_WT);
+    closest_ = closest_on(active_, p_WT);
     return before.hops;
   }
   ++counters_.found_far;
@@ -227,10 +229,10 @@ bool OffsetTracker::find_again(const Vector3d& p_WT) noexcept {
   const TrackerStep step = edge_planes_.follow(p_WT);
   if (!step.touching) return false;
   active_ = edge_planes_.active();
-  foot_.depth = step.depth;
-  foot_ = foot_on(active_, p_WT);
+  closest_.depth = step.depth;
+  closest_ = closest_on(active_, p_WT);
   // Inside, but above the smooth cell because its sides lean: on the surface.
-  if (!(foot_.depth >= 0)) foot_.depth = 0;
+  if (!(closest_.depth >= 0)) closest_.depth = 0;
   return true;
 }
 

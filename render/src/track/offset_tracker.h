@@ -8,7 +8,7 @@
 #include "mesh/smooth_normals.h"
 #include "mesh/surface_place.h"
 #include "mesh/surface_weights.h"
-#include "mesh/triangle_foot.h"
+#include "mesh/triangle_place.h"
 #include "search/contact_search.h"
 #include "thimble/driver/export.h"
 #include "track/surface_tracker.h"
@@ -16,7 +16,7 @@
 namespace thimble::render {
 
 /// Place of a tip on a triangle whose corners sink along their normals.
-struct OffsetFoot {
+struct OffsetTrianglePlace {
   Eigen::Vector3d weights{0, 0, 0};  ///< Weights of the corners; negative beyond a side.
   double depth = 0;                  ///< Sinking of the corners, m; negative outside.
   bool found = false;                ///< False if the offset triangle has turned over: too deep.
@@ -32,9 +32,10 @@ struct OffsetFoot {
 /// Newton's iteration in d only, from `depth_near`. For given d the offset triangle is plane, and
 /// the slope of the height above it is known in closed form. Real-time: safe; 2 or 3 rounds from a
 /// near depth, at worst 12.
-OffsetFoot find_offset_foot(const ContactMesh& mesh, const SmoothNormals& normals,
-                            std::int32_t triangle, const Eigen::Vector3d& p_WT,
-                            double depth_near) noexcept;
+OffsetTrianglePlace find_offset_triangle_place(const ContactMesh& mesh,
+                                               const SmoothNormals& normals, std::int32_t triangle,
+                                               const Eigen::Vector3d& p_WT,
+                                               double depth_near) noexcept;
 
 /// Tracks the tip over a smooth surface, with depth and direction continuous over edges and
 /// vertices at every depth up to the surface's radius of curvature.
@@ -88,18 +89,19 @@ class THIMBLE_EXPORT OffsetTracker {
   const Eigen::Vector3d& weights(const Eigen::Vector3d&) const noexcept { return weights_; }
 
   /// Returns the place on the active triangle of the tip at `p_WT` (W, m), as of the last step.
-  TriangleFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
-    return foot_.found ? offset_foot(*mesh_, *normals_, active_, weights_, foot_.depth)
-                       : edge_plane_foot(*mesh_, active_, p_WT);
+  TrianglePlace closest(const Eigen::Vector3d& p_WT) const noexcept {
+    return closest_.found
+               ? offset_triangle_place(*mesh_, *normals_, active_, weights_, closest_.depth)
+               : edge_plane_place(*mesh_, active_, p_WT);
   }
 
   /// Returns minus the gradient of the last step's depth by the tip's position, for its `foot`.
   /// Where the corners have not sunk, this is the normal of the face, edge or corner that holds the
   /// tip.
-  Eigen::Vector3d fall(const TriangleFoot& foot) const noexcept {
+  Eigen::Vector3d fall(const TrianglePlace& closest) const noexcept {
     if (held_.triangle >= 0) return n_W_;
-    if (!foot_.found) return mesh_->cell(active_).face.n;
-    return -offset_depth_slope(normals_->corners(active_), foot, foot_.depth);
+    if (!closest_.found) return mesh_->cell(active_).face.n;
+    return -offset_depth_slope(normals_->corners(active_), closest, closest_.depth);
   }
 
   TrackerCounters counters() const noexcept;
@@ -108,7 +110,7 @@ class THIMBLE_EXPORT OffsetTracker {
   const std::shared_ptr<const SmoothNormals>& smooth_normals() const noexcept { return normals_; }
 
  private:
-  OffsetFoot foot_on(std::int32_t triangle, const Eigen::Vector3d& p_WT) const noexcept;
+  OffsetTrianglePlace closest_on(std::int32_t triangle, const Eigen::Vector3d& p_WT) const noexcept;
   /// Result of a walk.
   struct Walk {
     std::uint16_t hops = 0;
@@ -126,7 +128,7 @@ class THIMBLE_EXPORT OffsetTracker {
   SurfaceTracker edge_planes_;
   std::int32_t active_ = -1;
   SurfacePlace held_;
-  OffsetFoot foot_;
+  OffsetTrianglePlace closest_;
   Eigen::Vector3d weights_{0, 0, 0};
   Eigen::Vector3d n_W_{0, 0, 0};
   TrackerCounters counters_;

@@ -23,8 +23,8 @@ namespace thimble::render {
 
 /// Finds the contact on a smooth surface of packed triangles: a search while the tip is free,
 /// tracking from offset triangle to offset triangle (offset_triangle.h) while it touches. The store
-/// provides the packed triangles; MemoryContact has all of them in memory. The function bodies are
-/// in packed_contact_steps.h, for files that instantiate it.
+/// provides the packed triangles; InMemoryContact has all of them in memory. The function bodies
+/// are in packed_contact_steps.h, for files that instantiate it.
 ///
 /// Depth and direction are continuous over edges and vertices, since neighbours share bit-identical
 /// offset edges. Over a crease the tip changes sides at the plane that halves the angle, where both
@@ -34,7 +34,7 @@ namespace thimble::render {
 /// Contact begins at the smooth surface. On a bulge that is above the triangles, by up to L^2 / 6R
 /// for edges of length L on a radius R [PHYSICS 3]. There the depth rises from 0, if the store
 /// provides the rise of the surface. Where the surface is concave it is below the triangles. There
-/// contact begins and ends at the triangles, softly (depth_below_hollow). So nothing jumps, and
+/// contact begins and ends at the triangles, softly (depth_below_concave). So nothing jumps, and
 /// depth is not bent towards the triangles as in CurvedDepth, which begins at the mesh.
 ///
 /// Where a packed triangle is absent, the plane felt last is held (held_plane.h) and the tick is
@@ -68,7 +68,7 @@ class THIMBLE_EXPORT PackedContact {
   /// Returns the surface point of the tip at `p_WT` (W, m) (surface_response.h); on the felt plane
   /// if the packed triangle is absent. Precondition: the last `update` was at `p_WT` and touches.
   /// Real-time: safe; some 100 ns.
-  SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept;
+  ClosestSurfacePoint closest(const Eigen::Vector3d& p_WT) const noexcept;
 
   const TrackerCounters& counters() const noexcept { return counters_; }
   /// Returns the number of ticks in which a packed triangle was absent.
@@ -119,7 +119,7 @@ class THIMBLE_EXPORT PackedContact {
   [[gnu::noinline]] THIMBLE_FOR_AVX2 void move_wide(const Eigen::Vector3d& p_WT) noexcept;
   // Rare code is not compiled twice.
   [[gnu::noinline]] bool begin(const Eigen::Vector3d& p_WT) noexcept;
-  bool begin_above(const Eigen::Vector3d& p_WT) noexcept requires TellsRise<Store>;
+  bool begin_above(const Eigen::Vector3d& p_WT) noexcept requires HasRise<Store>;
   Outcome follow(const Eigen::Vector3d& p_WT) noexcept;
   [[gnu::noinline, gnu::cold]] Outcome seek(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& p,
                                             std::int32_t before, Outcome settled,
@@ -134,7 +134,7 @@ class THIMBLE_EXPORT PackedContact {
   Outcome find_near(const Eigen::Vector3d& p, std::int32_t before) noexcept;
   Outcome walk(const Eigen::Vector3d& p, const Eigen::Vector3d& n, std::int32_t& triangle) noexcept;
   Outcome edge_to_hop(const Eigen::Vector3d& p, const OffsetPlace& place, int& edge) const noexcept;
-  [[gnu::noinline, gnu::cold]] Outcome hold_in_hollow(const Eigen::Vector3d& p,
+  [[gnu::noinline, gnu::cold]] Outcome hold_in_groove(const Eigen::Vector3d& p,
                                                       OffsetResponse& felt) noexcept;
   Outcome collect_fan(std::int32_t triangle, std::size_t k, Fan& fan) const noexcept;
   bool activate(std::int32_t triangle) noexcept;
@@ -170,9 +170,9 @@ class THIMBLE_EXPORT PackedContact {
   ContactState begun_;  // for such a store: the contact at its begin
   TrackerCounters counters_;
   HeldPlane held_;
-  SurfacePlace::On hollow_ = SurfacePlace::On::kFace;  // place type that held the tip last
-  Eigen::Vector3d along_{0, 0, 0};                     // unit direction of its edge
-  Eigen::Vector3d p_WT_hollow_{0, 0, 0};               // position of the tip then
+  SurfacePlace::On held_on_ = SurfacePlace::On::kFace;  // place type that held the tip last
+  Eigen::Vector3d along_{0, 0, 0};                      // unit direction of its edge
+  Eigen::Vector3d p_WT_held_{0, 0, 0};                  // position of the tip then
   std::uint64_t ticks_held_ = 0;
 };
 

@@ -6,13 +6,13 @@
 
 namespace thimble::render {
 
-MemoryStore::MemoryStore(PackedSurface surface, std::optional<SearchChoice> search)
-    : MemoryStore(std::make_shared<const PackedSurface>(std::move(surface)), nullptr) {
+InMemoryStore::InMemoryStore(PackedSurface surface, std::optional<SearchChoice> search)
+    : InMemoryStore(std::make_shared<const PackedSurface>(std::move(surface)), nullptr) {
   search_ = make_search(*surface_, search);
 }
 
-MemoryStore::MemoryStore(std::shared_ptr<const PackedSurface> surface,
-                         std::shared_ptr<const ContactSearch> search)
+InMemoryStore::InMemoryStore(std::shared_ptr<const PackedSurface> surface,
+                             std::shared_ptr<const ContactSearch> search)
     : triangles_(surface->triangles().data()),
       origin_(surface->origin()),
       per_step_(surface->per_step()),
@@ -20,20 +20,20 @@ MemoryStore::MemoryStore(std::shared_ptr<const PackedSurface> surface,
       surface_(std::move(surface)),
       search_(std::move(search)) {}
 
-template class PackedContact<MemoryStore>;
+template class PackedContact<InMemoryStore>;
 
-MemoryContact::MemoryContact(PackedSurface surface, std::optional<SearchChoice> search)
-    : PackedContact(MemoryStore(std::move(surface), search)) {}
+InMemoryContact::InMemoryContact(PackedSurface surface, std::optional<SearchChoice> search)
+    : PackedContact(InMemoryStore(std::move(surface), search)) {}
 
-MemoryContact::MemoryContact(std::shared_ptr<const PackedSurface> surface,
-                             std::shared_ptr<const ContactSearch> search)
-    : PackedContact(MemoryStore(std::move(surface), std::move(search))) {}
+InMemoryContact::InMemoryContact(std::shared_ptr<const PackedSurface> surface,
+                                 std::shared_ptr<const ContactSearch> search)
+    : PackedContact(InMemoryStore(std::move(surface), std::move(search))) {}
 
-driver::Result<MemoryContact> MemoryContact::build(const TriangleMesh& mesh,
-                                                   const PackedSurfaceOptions& options) {
+driver::Result<InMemoryContact> InMemoryContact::build(const TriangleMesh& mesh,
+                                                       const PackedSurfaceOptions& options) {
   auto surface = PackedSurface::build(mesh, options);
   if (!surface) return surface.error();
-  return MemoryContact(std::move(surface).value());
+  return InMemoryContact(std::move(surface).value());
 }
 
 }  // namespace thimble::render

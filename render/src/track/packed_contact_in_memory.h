@@ -16,16 +16,16 @@ namespace thimble::render {
 
 /// A store that has all packed triangles in memory and a search over them. For use by one thread at
 /// a time: it remembers the free space around the last path.
-class THIMBLE_EXPORT MemoryStore {
+class THIMBLE_EXPORT InMemoryStore {
  public:
   static constexpr bool kComplete = true;
 
   /// Takes a prepared surface and builds its search (make_search). Real-time: never from the servo
   /// thread.
-  explicit MemoryStore(PackedSurface surface, std::optional<SearchChoice> search = {});
+  explicit InMemoryStore(PackedSurface surface, std::optional<SearchChoice> search = {});
   /// Takes a shared surface and a shared search over it. Real-time: never from the servo thread.
-  MemoryStore(std::shared_ptr<const PackedSurface> surface,
-              std::shared_ptr<const ContactSearch> search);
+  InMemoryStore(std::shared_ptr<const PackedSurface> surface,
+                std::shared_ptr<const ContactSearch> search);
 
   // Functions of PackedStore. Real-time: safe.
 
@@ -62,24 +62,24 @@ class THIMBLE_EXPORT MemoryStore {
   mutable FreeSpace free_space_;  // changes the cost of a query, never its result
 };
 
-extern template class PackedContact<MemoryStore>;
+extern template class PackedContact<InMemoryStore>;
 
 /// Finds the contact on a smooth surface of any size that fits into memory. A `Contact` stage of
 /// ContactForceLaw, used instead of MeshContact where meshes are large or curved. Tracking and
 /// measures are described in packed_contact.h.
-class THIMBLE_EXPORT MemoryContact : public PackedContact<MemoryStore> {
+class THIMBLE_EXPORT InMemoryContact : public PackedContact<InMemoryStore> {
  public:
   /// Takes a prepared surface and builds its search (make_search). Real-time: never from the servo
   /// thread.
-  explicit MemoryContact(PackedSurface surface, std::optional<SearchChoice> search = {});
+  explicit InMemoryContact(PackedSurface surface, std::optional<SearchChoice> search = {});
   /// Takes a shared surface and a shared search over it. Real-time: never from the servo thread.
-  MemoryContact(std::shared_ptr<const PackedSurface> surface,
-                std::shared_ptr<const ContactSearch> search);
+  InMemoryContact(std::shared_ptr<const PackedSurface> surface,
+                  std::shared_ptr<const ContactSearch> search);
 
   /// Prepares a mesh (W, m); the error is that of PackedSurface::build.
   /// Real-time: never from the servo thread.
-  static driver::Result<MemoryContact> build(const TriangleMesh& mesh,
-                                             const PackedSurfaceOptions& options = {});
+  static driver::Result<InMemoryContact> build(const TriangleMesh& mesh,
+                                               const PackedSurfaceOptions& options = {});
 
   /// A copy shares mesh and search, and does not allocate.
   static constexpr bool kCopiesCheaply = true;

@@ -10,7 +10,7 @@
 #include "track/packed_contact.h"
 #include "track/packed_find_steps.h"
 #include "track/packed_follow_steps.h"
-#include "track/packed_hollow_steps.h"
+#include "track/packed_groove_steps.h"
 
 namespace thimble::render {
 
@@ -26,16 +26,16 @@ const ContactState& PackedContact<Store>::update(const driver::DeviceState& stat
 }
 
 template <PackedStore Store>
-SurfaceFoot PackedContact<Store>::foot(const Eigen::Vector3d& p_WT) const noexcept {
-  if (hollow_ != SurfacePlace::On::kFace && p_WT == p_WT_hollow_) {
-    SurfaceFoot foot = flat_foot(this->state());
-    foot.J_MT.setZero();
-    if (hollow_ == SurfacePlace::On::kEdge) foot.J_MT = along_ * along_.transpose();
-    return foot;
+ClosestSurfacePoint PackedContact<Store>::closest(const Eigen::Vector3d& p_WT) const noexcept {
+  if (held_on_ != SurfacePlace::On::kFace && p_WT == p_WT_held_) {
+    ClosestSurfacePoint closest = flat_closest_point(this->state());
+    closest.J_MT.setZero();
+    if (held_on_ == SurfacePlace::On::kEdge) closest.J_MT = along_ * along_.transpose();
+    return closest;
   }
   const OffsetPlace place = offset_.locate(store_.to_lattice(p_WT));
-  if (!place.valid) return flat_foot(this->state());
-  const OffsetWay way = offset_.way_to_surface(place);
+  if (!place.valid) return flat_closest_point(this->state());
+  const PathToSurface way = offset_.path_to_surface(place);
   return {.p_M = p_WT + store_.step() * way.to_surface,
           .n_M = this->state().n_W,
           .J_MT = way.J,
@@ -214,7 +214,7 @@ bool PackedContact<Store>::hold_behind(const Eigen::Vector3d& p_WT, std::int32_t
               state_.n_W.dot(face.n) > (inside ? kPushesOutBehind : kBeyondRim));
   if (behind_) {
     activate(face.triangle);
-    hollow_ = SurfacePlace::On::kFace;
+    held_on_ = SurfacePlace::On::kFace;
     state_ = {.touching = true,
               .triangle = offset_.source(),
               .depth = depth,
@@ -280,7 +280,7 @@ bool PackedContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
   if (free) p_WT_before_ = p_WT;
   has_before_ = true;
   if (found.entry.triangle < 0) {
-    if constexpr (TellsRise<Store>) {
+    if constexpr (HasRise<Store>) {
       if (found.complete) return begin_above(p_WT);
       above_ = false;  // as far as known
     }
@@ -298,7 +298,7 @@ bool PackedContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {
 // triangles. If so, makes the triangle below it active: contact begins there with depth 0.
 template <PackedStore Store>
 bool PackedContact<Store>::begin_above(
-    const Eigen::Vector3d& p_WT) noexcept requires TellsRise<Store> {
+    const Eigen::Vector3d& p_WT) noexcept requires HasRise<Store> {
   const double rise = store_.rise();
   if (!(rise > 0)) return false;
   const bool was_above = above_;

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "compact_mesh/beside_offset.h"
+#include "compact_mesh/outside_offset.h"
 #include "mesh/closest_point.h"
 #include "mesh/triangle_set.h"
 #include "track/packed_contact.h"

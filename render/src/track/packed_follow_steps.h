@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "compact_mesh/beside_offset.h"
+#include "compact_mesh/outside_offset.h"
 #include "mesh/triangle_set.h"
 #include "track/packed_contact.h"
 #include "track/packed_walk.h"
@@ -50,10 +50,10 @@ typename PackedContact<Store>::Outcome PackedContact<Store>::follow(
     // No cell holds the tip: usually it is in the gap below a concave crease.
     if (!held && std::min(std::min(place.l0, place.l1), place.l2) < kOutside && place.depth > 0) {
       OffsetResponse felt;
-      const Outcome hold = hold_in_hollow(p, felt);
+      const Outcome hold = hold_in_groove(p, felt);
       if (hold == Outcome::kUnknown) return hold;
       if (hold == Outcome::kYes) {
-        p_WT_hollow_ = p_WT;
+        p_WT_held_ = p_WT;
         report(p_WT, felt);
         return hold;
       }

@@ -50,7 +50,7 @@ concept PackedStore = requires(const Store& store, std::int32_t t, const Eigen::
 // The store knows the maximum height of the surface above its triangles, m; contact then begins
 // there.
 template <class Store>
-concept TellsRise = requires(const Store& store) {
+concept HasRise = requires(const Store& store) {
   { store.rise() } noexcept -> std::same_as<double>;
 };
 // clang-format on

@@ -67,10 +67,10 @@ bool ProxyFilter::lag(const Vector3d& p_WT, const Vector3d& path, const Vector3d
   p_WA_ = next;
   ++ticks_behind_;
   felt_ = found;
-  const Vector3d to_anchor = next - p_WT;
-  felt_.depth = to_anchor.norm();
+  const Vector3d to_proxy = next - p_WT;
+  felt_.depth = to_proxy.norm();
   // A filtered proxy at the tip has no direction: no force, with the tracked normal.
-  if (felt_.depth > 0) felt_.n_W = to_anchor / felt_.depth;
+  if (felt_.depth > 0) felt_.n_W = to_proxy / felt_.depth;
   felt_.p_WP = next;
   return false;
 }

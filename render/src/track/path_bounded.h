@@ -120,8 +120,8 @@ class PathBounded {
   /// the wrapped stage is; some ns more.
   const ContactState& update(const driver::DeviceState& state) noexcept {
     const ContactState& found = contact_.update(state);
-    as_found_ = anchor_.follow(state.p_WT, found);
-    return as_found_ ? found : anchor_.felt();
+    as_found_ = filter_.follow(state.p_WT, found);
+    return as_found_ ? found : filter_.felt();
   }
 
   /// Updates a copy of the wrapped stage with the expected tip. The tick then finds its data and
@@ -136,35 +136,35 @@ class PathBounded {
 
   /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept {
-    return as_found_ ? contact_.state() : anchor_.felt();
+    return as_found_ ? contact_.state() : filter_.felt();
   }
 
   /// Forwards that the surface has moved, and which triangle has swept over the free tip
   /// (TrackedContact). `path` is the path of a vertex near the tip, m. Real-time: safe.
   void surface_moved(std::int32_t swept_over, double path) noexcept {
     contact_.surface_moved(swept_over);
-    anchor_.surface_moved(path);
+    filter_.surface_moved(path);
   }
   /// Returns the start of the free tip's path (TrackedContact). Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept { return contact_.free_tip(); }
 
   /// Returns the surface point of the tip at `p_WT` (W, m; surface_response.h). While the felt
   /// contact lags, minus the gradient of its depth is its own normal. Real-time: safe.
-  SurfaceFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
-    SurfaceFoot foot = foot_of(contact_, p_WT);
-    if (!as_found_) foot.fall_W = anchor_.felt().n_W;
-    return foot;
+  ClosestSurfacePoint closest(const Eigen::Vector3d& p_WT) const noexcept {
+    ClosestSurfacePoint closest = closest_point_of(contact_, p_WT);
+    if (!as_found_) closest.fall_W = filter_.felt().n_W;
+    return closest;
   }
 
   const Contact& contact() const noexcept { return contact_; }
-  const ProxyFilter& anchor() const noexcept { return anchor_; }
+  const ProxyFilter& filter() const noexcept { return filter_; }
   decltype(auto) search() const noexcept { return contact_.search(); }
   decltype(auto) mesh() const noexcept requires requires(const Contact& contact) { contact.mesh(); }
   { return contact_.mesh(); }
 
  private:
   Contact contact_;
-  ProxyFilter anchor_;
+  ProxyFilter filter_;
   bool as_found_ = true;
 };
 

@@ -25,22 +25,22 @@ bool below_edge(const ContactMesh& mesh, std::int32_t t, std::size_t k,
 // Slides over the faces around a place to the one that leads nearest to the tip, and adds the
 // number of closest points computed. Returns false if none leads nearer.
 bool slide_on(const ContactMesh& mesh, const SurfacePlace& place, const Vector3d& p_OT, Rest& rest,
-              std::size_t& feet) noexcept {
+              std::size_t& examined) noexcept {
   bool moved = false;
   const auto consider = [&](std::int32_t t) noexcept {
-    const Foot foot = foot_on(mesh, t, p_OT);
+    const TriangleClosestPoint closest = closest_on(mesh, t, p_OT);
     // Strictly, so that the same point seen from another triangle does not count as progress.
-    if (!(foot.distance_squared < rest.foot.distance_squared)) return;
-    rest.foot = foot;
+    if (!(closest.distance_squared < rest.closest.distance_squared)) return;
+    rest.closest = closest;
     moved = true;
   };
   if (place.on == SurfacePlace::On::kEdge) {
     consider(mesh.cell(place.triangle).neighbours[place.k]);
-    ++feet;
+    ++examined;
   } else {
     const auto fan = mesh.fan(mesh.corners(place.triangle)[place.k]);
     for (const std::int32_t t : fan) consider(t);
-    feet += fan.size();
+    examined += fan.size();
   }
   rest.hops = static_cast<std::uint16_t>(rest.hops + moved);
   return moved;
@@ -50,22 +50,22 @@ bool slide_on(const ContactMesh& mesh, const SurfacePlace& place, const Vector3d
 
 Rest descend(const ContactMesh& mesh, const SurfacePlace& from, const Vector3d& p_OT) noexcept {
   Rest rest;
-  rest.foot = foot_on(mesh, from.triangle, p_OT);
-  std::size_t feet = 1;
-  if (from.on != SurfacePlace::On::kFace) slide_on(mesh, from, p_OT, rest, feet);
-  while (rest.foot.place.on != SurfacePlace::On::kFace) {
-    if (feet >= kFeetMax) return rest;
-    const SurfacePlace place = rest.foot.place;
-    if (!slide_on(mesh, place, p_OT, rest, feet)) break;
+  rest.closest = closest_on(mesh, from.triangle, p_OT);
+  std::size_t examined = 1;
+  if (from.on != SurfacePlace::On::kFace) slide_on(mesh, from, p_OT, rest, examined);
+  while (rest.closest.place.on != SurfacePlace::On::kFace) {
+    if (examined >= kExaminedMax) return rest;
+    const SurfacePlace place = rest.closest.place;
+    if (!slide_on(mesh, place, p_OT, rest, examined)) break;
   }
   rest.settled = true;
   return rest;
 }
 
 bool below(const ContactMesh& mesh, const Rest& rest, const Vector3d& p_OT) noexcept {
-  const Vector3d d = p_OT - rest.foot.p_OP;
-  const SurfacePlace& place = rest.foot.place;
-  if (place.on == SurfacePlace::On::kFace) return d.dot(rest.foot.normal) < 0;
+  const Vector3d d = p_OT - rest.closest.p_OP;
+  const SurfacePlace& place = rest.closest.place;
+  if (place.on == SurfacePlace::On::kFace) return d.dot(rest.closest.normal) < 0;
   if (place.on == SurfacePlace::On::kEdge) return below_edge(mesh, place.triangle, place.k, d);
 
   // At a settled corner every direction within the surface points away from the tip. Seen from the

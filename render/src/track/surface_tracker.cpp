@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "mesh/closest_point.h"
-#include "mesh/foot_point.h"
+#include "mesh/triangle_closest_point.h"
 #include "mesh/triangle_set.h"
 #include "track/concave_constraint.h"
 
@@ -25,7 +25,7 @@ constexpr double kNearlyFlat = 0.98;
 
 // Faces that lean by more, as a cosine, are the back of a thin part. They become active only over
 // edges. 104 degrees, so that the walls of a block are all included. [chosen]
-constexpr double kLooksAway = -0.25;
+constexpr double kOppositeSide = -0.25;
 
 // Ratio by which the holding point is farther away than the plane of the face. [chosen]
 constexpr double kBeyondPlane = 1.1;
@@ -134,16 +134,16 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
   step.depth = std::max(depth, 0.0);
   held_.triangle = -1;
   if ((mesh_->cell(active_).around > kLean || mesh_->moved()) &&
-      !(edges.least >= 0 && is_quiet(p_WT)) && look_around(p_WT, step)) {
+      !(edges.least >= 0 && is_quiet(p_WT)) && search_near(p_WT, step)) {
     edges = edge_distances(active_, p);
   }
   // Next to a concave edge, the face is not the only constraint.
   const TriangleCell& cell = mesh_->cell(active_);
-  if (cell.hollow > 0 && edges.least < cell.beside_hollow(step.depth)) {
+  if (cell.concave > 0 && edges.least < cell.concave_reach(step.depth)) {
     const double plane = step.depth;
     hold(p_WT, step);
     // Farther than the plane: other faces may be nearer that were not nearer than the plane.
-    if (held_.triangle >= 0 && step.depth > kBeyondPlane * plane && look_around(p_WT, step)) {
+    if (held_.triangle >= 0 && step.depth > kBeyondPlane * plane && search_near(p_WT, step)) {
       hold(p_WT, step);
     }
   }
@@ -156,7 +156,7 @@ TrackerStep SurfaceTracker::follow(const Vector3d& p_WT) noexcept {
 // Cells end only at the planes of their own edges. So around a sharp corner, or a ridge of small
 // triangles, a tip may be in the cell of one face while another is nearer. The nearer face becomes
 // active, unless it faces away from the entered one.
-bool SurfaceTracker::look_around(const Vector3d& p_WT, TrackerStep& step) noexcept {
+bool SurfaceTracker::search_near(const Vector3d& p_WT, TrackerStep& step) noexcept {
   bool moved = false;
   double quiet = 0;
   for (int round = 0; round < kRoundsAround; ++round) {
@@ -170,12 +170,12 @@ bool SurfaceTracker::look_around(const Vector3d& p_WT, TrackerStep& step) noexce
       for (const std::int32_t t : fan) {
         const Vector3d& n = mesh_->cell(t).face.n;
         const double lean = n.dot(cell.face.n);
-        if (!(lean < kNearlyFlat && lean > kLooksAway)) continue;
+        if (!(lean < kNearlyFlat && lean > kOppositeSide)) continue;
         // No point of a triangle is nearer than its plane.
         const double depth = mesh_->depth(t, p_WT);
         double farther = depth < 0 ? -2 * depth : depth - step.depth;
         if (depth >= 0 && depth < nearest) {
-          const double distance = std::sqrt(foot_on(*mesh_, t, p_WT).distance_squared);
+          const double distance = std::sqrt(closest_on(*mesh_, t, p_WT).distance_squared);
           farther = distance - step.depth;
           // The first of several equally near faces, so that rounding does not decide.
           if (distance < nearest * (1 - kTie)) {
@@ -204,7 +204,7 @@ bool SurfaceTracker::look_around(const Vector3d& p_WT, TrackerStep& step) noexce
 // The tip is next to the active face, over a concave edge, or in no cell.
 void SurfaceTracker::hold(const Vector3d& p_WT, TrackerStep& step) noexcept {
   held_.triangle = -1;
-  const HollowHold hold = hold_in_hollow(*mesh_, active_, p_WT);
+  const GrooveHold hold = hold_in_groove(*mesh_, active_, p_WT);
   if (!hold.holds) return;
   // The distance of the closest point nearby changes by no more than the tip moves. Where surfaces
   // fold over themselves, the way to it may end early, far away; then the face continues to hold.

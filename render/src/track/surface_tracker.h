@@ -8,7 +8,7 @@
 #include "mesh/contact_mesh.h"
 #include "mesh/surface_place.h"
 #include "mesh/surface_weights.h"
-#include "mesh/triangle_foot.h"
+#include "mesh/triangle_place.h"
 #include "search/contact_search.h"
 #include "thimble/driver/export.h"
 
@@ -97,12 +97,12 @@ class THIMBLE_EXPORT SurfaceTracker {
   }
 
   /// Returns the place on the active triangle of the tip at `p_WT` (W, m).
-  TriangleFoot foot(const Eigen::Vector3d& p_WT) const noexcept {
-    return edge_plane_foot(*mesh_, active_, p_WT);
+  TrianglePlace closest(const Eigen::Vector3d& p_WT) const noexcept {
+    return edge_plane_place(*mesh_, active_, p_WT);
   }
 
   /// Returns minus the gradient of the depth by the tip's position: the normal.
-  Eigen::Vector3d fall(const TriangleFoot&) const noexcept { return normal(); }
+  Eigen::Vector3d fall(const TrianglePlace&) const noexcept { return normal(); }
 
   const TrackerCounters& counters() const noexcept { return counters_; }
 
@@ -122,7 +122,7 @@ class THIMBLE_EXPORT SurfaceTracker {
     return looked_ == active_ && (p_WT - p_WT_looked_).squaredNorm() < quiet_squared_ &&
            !mesh_->moved();
   }
-  bool look_around(const Eigen::Vector3d& p_WT, TrackerStep& step) noexcept;
+  bool search_near(const Eigen::Vector3d& p_WT, TrackerStep& step) noexcept;
   void hold(const Eigen::Vector3d& p_WT, TrackerStep& step) noexcept;
   std::uint16_t walk(const Eigen::Vector3d& p, EdgeDistances& edges) noexcept;
   std::uint16_t settle(const Eigen::Vector3d& p, EdgeDistances& edges) noexcept;

@@ -12,7 +12,7 @@ typedef int (*Six)(int, const double*, const double*, const double*, const doubl
 
 int main(int argc, char** argv) {
   static Sphere sphere = {{0, 0, 0}, 0.020, 250}; /* m, N/m */
-  static AskedLog asked;
+  static ForceLog asked;
   const SphereChoice choice = sphere_choice(argc, argv, &sphere, &asked);
   void* library = dlopen("libhdPhantom.so", RTLD_LAZY | RTLD_GLOBAL);
   ById open_arm, close_arm;
@@ -31,10 +31,10 @@ int main(int argc, char** argv) {
     if (!position(0, &p[0], &p[1], &p[2])) return 4;
     depth = sphere_force(&sphere, p, f);
     if (depth > deepest) deepest = depth;
-    note_asked(&asked, f);
+    log_force(&asked, f);
     if (force(0, &f[0], &f[1], &f[2], &none, &none, &none) == -1) return 5;
   }
   close_arm(0);
   printf("%d turns, %.2f mm deep\n", turn, 1000 * deepest);
-  return write_asked(&asked, choice.log_file) || !(deepest > 0.001) ? 6 : 0;
+  return write_forces(&asked, choice.log_file) || !(deepest > 0.001) ? 6 : 0;
 }

@@ -31,9 +31,9 @@ static double sphere_force(const Sphere* sphere, const double p[3], double f[3])
 typedef struct {
   double (*all)[3];
   long count, room;
-} AskedLog;
+} ForceLog;
 
-static void note_asked(AskedLog* log, const double f[3]) {
+static void log_force(ForceLog* log, const double f[3]) {
   int i;
   if (log->count >= log->room) return;
   for (i = 0; i < 3; ++i) log->all[log->count][i] = f[i];
@@ -47,7 +47,7 @@ typedef struct {
   const char* log_file;
 } SphereChoice;
 
-static SphereChoice sphere_choice(int argc, char** argv, Sphere* sphere, AskedLog* log) {
+static SphereChoice sphere_choice(int argc, char** argv, Sphere* sphere, ForceLog* log) {
   SphereChoice choice = {3.5, 0};
   int i;
   if (argc > 1) choice.seconds = atof(argv[1]);
@@ -59,7 +59,7 @@ static SphereChoice sphere_choice(int argc, char** argv, Sphere* sphere, AskedLo
 }
 
 /* Returns 0 if all forces were written to the file. */
-static int write_asked(const AskedLog* log, const char* file_name) {
+static int write_forces(const ForceLog* log, const char* file_name) {
   FILE* file;
   long i;
   if (!file_name) return 0;

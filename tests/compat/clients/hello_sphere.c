@@ -9,7 +9,7 @@
 #include "client_sphere.h"
 
 static Sphere sphere = {{0, 0, 0}, 20, 0.25}; /* mm, N/mm */
-static AskedLog asked;
+static ForceLog asked;
 static double asked_before[3], largest_difference, deepest;
 static int compared;
 
@@ -23,7 +23,7 @@ static HDCallbackCode HDCALLBACK feel(void* data) {
   depth = sphere_force(&sphere, p, f);
   if (depth > deepest) deepest = depth;
   hdSetDoublev(HD_CURRENT_FORCE, f);
-  note_asked(&asked, f);
+  log_force(&asked, f);
   /* The force sent in the previous tick must be the one requested before it. */
   hdGetDoublev(HD_LAST_FORCE, sent);
   hdEndFrame(hdGetCurrentDevice());
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
   hdDisableDevice(device);
   printf("%d callbacks, %.2f mm deep, force off by %.4f N at most\n", compared, deepest,
          largest_difference);
-  if (write_asked(&asked, choice.log_file)) return 5;
+  if (write_forces(&asked, choice.log_file)) return 5;
   if (compared < 700 * choice.seconds || !(deepest > 1)) return 3;
   /* With a log, the test itself compares each force, including those limited by the gate. */
   return choice.log_file || largest_difference < 0.2 ? 0 : 4;

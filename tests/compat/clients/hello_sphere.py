@@ -76,7 +76,7 @@ def by_phantom():
         step = ctypes.sizeof(ctypes.c_double)
         return [ctypes.byref(vector, i * step) for i in range(3)]
 
-    most = 0.0
+    highest = 0.0
     begin = time.monotonic()
     for _ in range(2500):
         if library.hdPhantomGetPosition(0, *each(p)) != 1:
@@ -84,11 +84,11 @@ def by_phantom():
         f = force_at(p, RADIUS / 1000, STIFFNESS * 1000)
         if library.hdPhantomSetForceAndTorque(0, *each(f), none, none, none) != 0:
             return False
-        most = max(most, f[2])
+        highest = max(highest, f[2])
     took = time.monotonic() - begin
     library.hdPhantomClose(0)
-    print(f"2500 turns in {took:.2f} s, {most:.2f} N upwards at most")
-    return took > 2.4 and most > 0.5
+    print(f"2500 turns in {took:.2f} s, {highest:.2f} N upwards at most")
+    return took > 2.4 and highest > 0.5
 
 
 if not by_hd() or not by_phantom():

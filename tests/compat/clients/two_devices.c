@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 static HHD arms[2];
-static double most;
+static double max_force;
 
 static HDCallbackCode HDCALLBACK tie(void* data) {
   double p[2][3], f[2][3];
@@ -18,7 +18,7 @@ static HDCallbackCode HDCALLBACK tie(void* data) {
   for (i = 0; i < 3; ++i) {
     f[0][i] = 0.05 * (p[1][i] - p[0][i]);
     f[1][i] = -f[0][i];
-    if (f[0][i] > most) most = f[0][i];
+    if (f[0][i] > max_force) max_force = f[0][i];
   }
   for (arm = 0; arm < 2; ++arm) {
     hdMakeCurrentDevice(arms[arm]);

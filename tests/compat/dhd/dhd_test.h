@@ -29,7 +29,7 @@ class CompatDhd : public ::testing::Test {
 
  private:
   static void close_all() {
-    for (char id = 0; id < kArmsMost; ++id) dhdClose(id);
+    for (char id = 0; id < kArmsMax; ++id) dhdClose(id);
   }
 };
 

@@ -13,17 +13,17 @@ namespace {
 constexpr double kPeriod = 1e-3;  // s
 constexpr double kMass = 0.1;     // kg
 constexpr double kHand = 2;       // N s/m
-constexpr double kForceMost = 5;  // N, of the gate
+constexpr double kForceMax = 5;   // N, of the gate
 constexpr std::int64_t kStall_ns = 20'000'000;
 
 struct FakeArm {
   bool open = false, enabled = false;
   ArmFacts facts;
   ArmReading reading;
-  ForceAsked asked;
+  ForceRequest asked;
   double force_limit = 0, speed_limit = 0;
   std::int64_t watchdog_ns = 0, asked_ns = 0;
-  driver::SafetyGate gate{{.force_max = kForceMost,
+  driver::SafetyGate gate{{.force_max = kForceMax,
                            .speed_max = 3,
                            .rise_max = 1e5,
                            .soft_start = 0.05,
@@ -34,7 +34,7 @@ struct FakeArm {
 std::mutex mutex;
 fake::Setup made;
 bool over = false;
-std::array<FakeArm, kArmsMost> all;
+std::array<FakeArm, kArmsMax> all;
 std::vector<std::string> wrong;
 
 Eigen::Map<Eigen::Vector3d> map(std::array<double, 3>& v) {
@@ -82,7 +82,7 @@ Eigen::Matrix3d jacobian() {
 }
 
 void reset(const Setup& setup) {
-  for (int arm = 0; arm < kArmsMost; ++arm) {
+  for (int arm = 0; arm < kArmsMax; ++arm) {
     while (arms::close(arm)) {
     }
   }
@@ -90,14 +90,14 @@ void reset(const Setup& setup) {
   made = setup;
   over = false;
   wrong.clear();
-  for (int i = 0; i < kArmsMost; ++i) {
+  for (int i = 0; i < kArmsMax; ++i) {
     FakeArm& arm = all[static_cast<std::size_t>(i)];
     arm = {};
     std::strcpy(arm.facts.name.data(), i == 1 ? "falcon" : "vintage_phantom");
     arm.facts.has_orientation = arm.facts.has_gimbal = setup.has_orientation;
     arm.facts.has_gripper = setup.has_gripper;
     arm.facts.has_joints = setup.has_joints;
-    arm.facts.force_max = kForceMost;
+    arm.facts.force_max = kForceMax;
     arm.facts.stiffness_max = 800;
     arm.facts.damping_max = 8;
     arm.facts.speed_max = 3;
@@ -125,7 +125,7 @@ Eigen::Vector3d f_sent_W(int arm) {
   return map(all[static_cast<std::size_t>(arm)].reading.f_sent_W);
 }
 
-ForceAsked asked(int arm) {
+ForceRequest asked(int arm) {
   const std::lock_guard lock(mutex);
   return all[static_cast<std::size_t>(arm)].asked;
 }
@@ -213,7 +213,7 @@ bool wait_for_tick(int arm, std::uint64_t after) noexcept {
   return true;
 }
 
-bool ask_force(int arm, const ForceAsked& asked) noexcept {
+bool ask_force(int arm, const ForceRequest& asked) noexcept {
   const std::lock_guard lock(mutex);
   FakeArm* found = opened(arm);
   if (!found || over) return false;

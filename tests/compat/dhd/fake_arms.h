@@ -32,7 +32,7 @@ void pass(int arm, double seconds);
 /// Returns the force of the motors, N in the world.
 Eigen::Vector3d f_sent_W(int arm);
 /// Returns the last request.
-ForceAsked asked(int arm);
+ForceRequest asked(int arm);
 /// Returns the fault of an arm's gate.
 driver::Fault fault(int arm);
 /// Ends the run, as `thimble exec` does.

@@ -176,15 +176,15 @@ TEST_F(CompatDhd, VibrationIsAddedToTheForce) {
   EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_INVALID);
   EXPECT_EQ(dhdSetVibration(100, 0.5, 0), 0);
   send_for_long(1, 0, 1);
-  double least = 9, most = -9;
+  double lowest = 9, highest = -9;
   for (int i = 0; i < 100; ++i) {
     dhdSetForce(1, 0, 1);
     EXPECT_EQ(fake::f_sent_W(0).x(), 1);
-    least = std::min(least, fake::f_sent_W(0).z());
-    most = std::max(most, fake::f_sent_W(0).z());
+    lowest = std::min(lowest, fake::f_sent_W(0).z());
+    highest = std::max(highest, fake::f_sent_W(0).z());
   }
-  EXPECT_NEAR(least, 0.5, 0.03);
-  EXPECT_NEAR(most, 1.5, 0.03);
+  EXPECT_NEAR(lowest, 0.5, 0.03);
+  EXPECT_NEAR(highest, 1.5, 0.03);
   EXPECT_EQ(dhdSetVibration(0, 0, 0), 0);
   dhdSetForce(1, 0, 1);
   EXPECT_EQ(fake::f_sent_W(0).z(), 1);

@@ -86,11 +86,11 @@ TEST_F(CompatDhd, ErrorsArePerThread) {
 
 TEST_F(CompatDhd, StartsAThreadOfTheProgram) {
   static std::atomic<int> seen{0};
-  static int told = 7;
+  static int value = 7;
   ASSERT_EQ(
       dhdStartThread(
           [](void* argument) -> void* { return seen = *static_cast<int*>(argument), nullptr; },
-          &told, 1),
+          &value, 1),
       0);
   for (int i = 0; i < 1000 && seen == 0; ++i) dhdSleep(0.01);
   EXPECT_EQ(seen, 7);

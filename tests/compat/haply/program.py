@@ -72,15 +72,15 @@ async def opened(arm, force=(0.3, 0.0, 0.4)):
 async def first_message():
     """The first message has the full state, later ones only state and status."""
     arm = await connect()
-    (told,) = arm.first["inverse3"]
+    (got,) = arm.first["inverse3"]
     check(isinstance(arm.first["session_id"], int), "no session_id")
-    check(told["config"]["handedness"] == "right", "no config")
-    check(told["status"] == {"calibrated": True, "ready": True, "started": True, "power_supply": True, "in_use": False},
-          told["status"])
+    check(got["config"]["handedness"] == "right", "no config")
+    check(got["status"] == {"calibrated": True, "ready": True, "started": True, "power_supply": True, "in_use": False},
+          got["status"])
     for vector in ("cursor_position", "cursor_velocity", "current_cursor_force"):
-        check(len(three(told["state"][vector])) == 3, vector)
+        check(len(three(got["state"][vector])) == 3, vector)
     for angles in ("angular_position", "angular_velocity"):
-        check(set(told["state"][angles]) == {"a0", "a1", "a2"}, angles)
+        check(set(got["state"][angles]) == {"a0", "a1", "a2"}, angles)
     (grip,) = arm.first["wireless_verse_grip"]
     check(set(grip["state"]["buttons"]) == {"a", "b", "c"}, "no buttons")
     later = await arm.exchange({"session": {"configure": {"profile": {"name": "test:program"}}}})
@@ -123,8 +123,8 @@ async def force(log):
             # x right, y away, z up, from x to the user, y right, z up; inverse3.yaml has the origin.
             print(-y - 0.130, x, z - 0.170, -v, u, w, -b, a, c, file=lines)
             if turn > 1000:
-                told = three(state["current_cursor_force"])
-                check(math.dist(told, asked) < 1e-9, f"requested {asked}, sent {told}")
+                got = three(state["current_cursor_force"])
+                check(math.dist(got, asked) < 1e-9, f"requested {asked}, sent {got}")
     await arm.socket.close()
 
 
@@ -160,8 +160,8 @@ async def garbage():
     for message in bad:
         await opened(arm)
         answer = await arm.exchange(message)
-        told = length(state_of(answer)["current_cursor_force"])
-        check(told == 0, f"{message[:60]!r} left {told} N")
+        got = length(state_of(answer)["current_cursor_force"])
+        check(got == 0, f"{message[:60]!r} left {got} N")
         check(answer["inverse3"][0]["status"]["ready"], f"{message[:60]!r} is a fault")
     await opened(arm)
 

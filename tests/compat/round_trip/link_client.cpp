@@ -60,10 +60,11 @@ int run(const std::string& kind, const char* arm_file, std::FILE* log, std::uint
   if (!device) return complain(device.error());
   if (auto active = (*device)->activate(); !active) return complain(active.error());
   // Depending on the load, many ticks here may be few ticks of the arm.
-  const auto arm_told = [&] {
+  const auto arm_reported = [&] {
     return (*device)->wire_counters().reports + (*device)->wire_counters().skipped;
   };
-  for (int tick = 0; arm_told() < arm_ticks && (*device)->fault() == driver::Fault::kNone; ++tick) {
+  for (int tick = 0; arm_reported() < arm_ticks && (*device)->fault() == driver::Fault::kNone;
+       ++tick) {
     const std::int64_t next_ns = clock.now_ns() + 1'000'000;
     clock.sleep_until_ns(next_ns);
     (*device)->read(next_ns, next_ns + 20'000'000);

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 TEST(Counting, StaysWithinTheBound) {
-  EXPECT_EQ(at_most(3, 5), 3);
-  EXPECT_EQ(at_most(7, 5), 5);
+  EXPECT_EQ(limited(3, 5), 3);
+  EXPECT_EQ(limited(7, 5), 5);
 }
 
 TEST(Counting, CountsToN) {

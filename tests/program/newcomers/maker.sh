@@ -13,12 +13,12 @@ rule=$(sed -n 's/^ *-> sudo cp \([^ ]*\) .*/\1/p' doctor.txt)
 says guide/commands.md 'a simulated arm as a USB device of this machine (root)'
 thimble plug falcon --port 0 >plug.txt 2>&1 &
 plug=$!
-wait_for 'waits on port [0-9]+ as USB device' plug.txt
+wait_for 'on port [0-9]+ as USB device' plug.txt
 kill -INT $plug
 wait $plug || fail "plug ended with $?: $(cat plug.txt)"
 see '^Unplugged' cat plug.txt
 
-says guide/own_arm.md 'they try the simulated arm of `--arm`, say SIMULATED on the first and the last line, and keep nothing'
+says guide/own_arm.md 'they try the simulated arm of `--arm`, print SIMULATED on the first and the last line, and save nothing'
 see '^encoder_sign' thimble calibrate --device sim --arm polhem
 see '^ok +watchdog' thimble feel-check --device sim --arm polhem
 

@@ -12,7 +12,7 @@ says guide/recording.md 'It is HDF5 with a unit on every column, so Python, MATL
 see '^Force' thimble run rubber --record rubber.h5
 if has h5dump; then see 'unit' h5dump -A rubber.h5; fi
 says guide/recording.md '`--verify` reports whether every force is bit-identical'
-see 'to the bit' thimble replay rubber.h5 --verify
+see 'bit-identical' thimble replay rubber.h5 --verify
 
 if ! python3 -c 'import thimble' 2>/dev/null; then
   echo "  NOT TESTED: the series in Python; the package or python3-numpy is missing."

@@ -33,9 +33,9 @@ fi
 see PNG head -c 4 clay.png
 says guide/recording.md 'an animation of a moment'
 animate() { thimble shot clay --at 2 --until 2.5 --pace 8 --size 160x120 --animate "$1"; }
-see 'Animated picture: clay_film\.png \(animated PNG, 4 pictures' animate clay_film.png
+see 'Animation: clay_film\.png \(animated PNG, 4 pictures' animate clay_film.png
 if has ffmpeg; then
-  see 'Animated picture: clay\.mp4 \(by ffmpeg, 4 pictures' animate clay.mp4
+  see 'Animation: clay\.mp4 \(by ffmpeg, 4 pictures' animate clay.mp4
 else
   animate clay.mp4 >said 2>&1 && fail "an MP4 without ffmpeg: $(cat said)"
   see 'apt install ffmpeg' cat said

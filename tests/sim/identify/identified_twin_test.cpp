@@ -74,7 +74,7 @@ TEST(IdentifiedTwin, WritesCommentsForValuesWithoutAKey) {
   found.friction.mean = {Estimate{0.04, 0.001}, {0.04, 0.001}, {0.04, 0.001}};
   found.friction.uneven = {Estimate{0.01, 0.001}, {0, 0.001}, {0, 0.001}};
   found.reports = ReportTiming{.period = {0.001, 1e-8}, .jitter = {6e-5, 1e-6}, .reports = 2000};
-  found.saturation[1] = {.seen = true, .most = {0.3, 0.01}, .asked = 0.5, .searched = true};
+  found.saturation[1] = {.seen = true, .max_torque = {0.3, 0.01}, .asked = 0.5, .searched = true};
   const IdentifiedMark mark{.date = "2026-11-25", .arm = "A 1"};
   const auto first = identified_text(own_text(), found.constants, mark);
   ASSERT_TRUE(first.ok()) << first.error().message;
@@ -165,7 +165,7 @@ TEST(IdentifyForce, StaysBelowTheUsersLimit) {
     });
     const std::atomic<bool> never{false};
     const auto motion = record_motion(
-        **bench, arm.file, {.seconds = 3, .lead = 0.5, .force_most = allowed, .seed = 7}, never);
+        **bench, arm.file, {.seconds = 3, .lead = 0.5, .max_force = allowed, .seed = 7}, never);
     ASSERT_TRUE(motion.ok()) << motion.error().message;
     EXPECT_LE(most, allowed);
     EXPECT_GT(most, before);
@@ -178,12 +178,12 @@ TEST(IdentifyForce, LimitMustSuitTheFileAndTheMass) {
   const scene::ArmFile file = scene::load_arm(kArm).value();
   EXPECT_TRUE(check_forces(file, {}).ok());
   EXPECT_TRUE(check_forces(file, {.known_mass = 0.06}).ok());
-  EXPECT_TRUE(check_forces(file, {.force_most = file.limits.force_max}).ok());
-  EXPECT_TRUE(support::refuses(check_forces(file, {.force_most = 5.1}), "gate.force_max"));
-  EXPECT_TRUE(support::refuses(check_forces(file, {.force_most = 0.1}), "at least"));
-  EXPECT_TRUE(support::refuses(check_forces(file, {.force_most = std::nan("")}), "at least"));
+  EXPECT_TRUE(check_forces(file, {.max_force = file.limits.force_max}).ok());
+  EXPECT_TRUE(support::refuses(check_forces(file, {.max_force = 5.1}), "gate.force_max"));
+  EXPECT_TRUE(support::refuses(check_forces(file, {.max_force = 0.1}), "at least"));
+  EXPECT_TRUE(support::refuses(check_forces(file, {.max_force = std::nan("")}), "at least"));
   EXPECT_TRUE(
-      support::refuses(check_forces(file, {.known_mass = 0.04, .force_most = 0.5}), "0.031 kg"));
+      support::refuses(check_forces(file, {.known_mass = 0.04, .max_force = 0.5}), "0.031 kg"));
 }
 
 TEST(IdentifyForce, WatchdogPushStaysWithinTheLimit) {

@@ -166,7 +166,7 @@ Seen watched(const Case& one, std::uint64_t seed) {
       bench_file.simulated.hand.mass += support::kKnownMass;
       bench_file.simulated.weight_B +=
           file.R_WB.transpose() * Eigen::Vector3d(0, 0, -scene::kGravity * support::kKnownMass);
-      bench_file.limits.soft_start = driver::GateLimits::kSoftStartLeast;
+      bench_file.limits.soft_start = driver::GateLimits::kSoftStartMin;
     }
     auto bench = BenchArm::open(bench_file, {}, {}, one.hand_W, kIdentifyForceMax);
     if (!bench) {

@@ -113,7 +113,7 @@ struct Scores {
     int held = held_weights + held_viscous, all = 2 * arms;
     for (const Score* score : {&mass, &coulomb, &gain, &delay}) {
       score->tell();
-      EXPECT_LT(score->worst, score->most) << score->name;
+      EXPECT_LT(score->worst, score->max) << score->name;
       held += score->held;
       all += score->all;
     }

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "bringup/identify/line_forces.h"
-#include "bringup/identify/not_identified.h"
+#include "bringup/identify/unidentified_parameters.h"
 #include "support/identify/cabled_arm.h"
 #include "support/identify/identified_arm.h"
 #include "support/long_form.h"
@@ -45,7 +45,7 @@ TEST(IdentifyCables, FindsCablesAndTheLinksBehindThem) {
     }
     ASSERT_TRUE(found->constants.cables) << "arm " << k;
     EXPECT_TRUE(found->against.empty()) << "arm " << k << ": " << found->against.front();
-    EXPECT_EQ(found->play.understood(), long_form()) << "arm " << k;
+    EXPECT_EQ(found->play.fits_to_steps(), long_form()) << "arm " << k;
     EXPECT_FALSE(found->play.seen) << "arm " << k;
     const auto& plant = arm.file.simulated.plant;
     const auto& train = arm.file.simulated.drive_train;
@@ -82,7 +82,7 @@ TEST(IdentifyCables, FindsOrReportsUnseenResonances) {
     ASSERT_TRUE(found.ok()) << found.error().message;
     ASSERT_TRUE(found->constants.cables) << "arm " << k << ": no cables found";
     if (!found->against.empty()) continue;
-    const auto sentences = not_identified(*found);
+    const auto sentences = unidentified_parameters(*found);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto joint = static_cast<Eigen::Index>(i);
       const auto& train = arm.file.simulated.drive_train;
@@ -135,7 +135,7 @@ TEST(IdentifyCables, ReportsItsDetectionLimit) {
   const auto found = identified(hidden_arm(7), {.seconds = long_form() ? 20.0 : 12.0});
   ASSERT_TRUE(found.ok()) << found.error().message;
   EXPECT_GT(found->lines.unseen_from.minCoeff(), 100);
-  const auto sentences = not_identified(*found);
+  const auto sentences = unidentified_parameters(*found);
   EXPECT_TRUE(std::any_of(sentences.begin(), sentences.end(), [](const std::string& one) {
     return one.find("no compliance detected") != std::string::npos;
   }));

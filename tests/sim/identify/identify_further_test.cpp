@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include "bringup/identify/not_identified.h"
+#include "bringup/identify/unidentified_parameters.h"
 #include "support/identify/identified_arm.h"
 #include "support/long_form.h"
 #include "support/random.h"
@@ -25,7 +25,7 @@ TEST(IdentifyFriction, IsReportedForDirectionsThatDiffer) {
   // Friction c+ in one direction and c- in the other equals exactly their mean plus a constant
   // force of half their difference. The arm is simulated in that form.
   const int arms = long_form() ? 60 : 1;
-  int told = 0, held = 0, all = 0;
+  int reported = 0, held = 0, all = 0;
   double worst = 0;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(11'000 + k);
@@ -43,19 +43,19 @@ TEST(IdentifyFriction, IsReportedForDirectionsThatDiffer) {
         arm, {.seconds = long_form() ? 30.0 : 15.0, .known_mass = kKnownMass, .seed = seed});
     ASSERT_TRUE(found.ok()) << found.error().message;
     const FrictionDirections& friction = found->friction;
-    told += friction.directions_differ ? 1 : 0;
+    reported += friction.directions_differ ? 1 : 0;
     const Eigen::Vector3d uneven_B = arm.file.R_WB.transpose() * uneven_W;
     for (int axis = 0; axis < 3; ++axis) {
-      if (!friction.tells(axis)) continue;
+      if (!friction.is_observable(axis)) continue;
       const Estimate& one = friction.uneven[static_cast<std::size_t>(axis)];
       worst = std::max(worst, std::abs(one.value - uneven_B[axis]) / coulomb);
       held += one.holds(uneven_B[axis]) ? 1 : 0;
       ++all;
     }
   }
-  std::printf("%d of %d arms reported; worst %.3g of the friction; %d of %d intervals hold\n", told,
-              arms, worst, held, all);
-  EXPECT_EQ(told, arms);
+  std::printf("%d of %d arms reported; worst %.3g of the friction; %d of %d intervals hold\n",
+              reported, arms, worst, held, all);
+  EXPECT_EQ(reported, arms);
   EXPECT_LT(worst, 0.05);
   EXPECT_GT(held, 0.85 * all);
 }
@@ -80,10 +80,10 @@ TEST(IdentifySaturation, NamesTheSaturatedMotor) {
       const auto& drive = arm.file.model.drives[i];
       const double truth = arm.file.simulated.motors.current_max / arm.gain[i] *
                            std::abs(drive.ratio * drive.torque_constant);
-      std::printf("motor %zu: %.4g +- %.2g N m, true %.4g\n", i + 1, one.most.value,
-                  one.most.plus_minus, truth);
-      worst = std::max(worst, std::abs(one.most.value / truth - 1));
-      held += one.most.holds(truth) ? 1 : 0;
+      std::printf("motor %zu: %.4g +- %.2g N m, true %.4g\n", i + 1, one.max_torque.value,
+                  one.max_torque.plus_minus, truth);
+      worst = std::max(worst, std::abs(one.max_torque.value / truth - 1));
+      held += one.max_torque.holds(truth) ? 1 : 0;
       ++all;
     }
     EXPECT_GE(seen, 1);

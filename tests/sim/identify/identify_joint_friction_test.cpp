@@ -9,8 +9,8 @@
 #include <string>
 
 #include "bringup/identify/constants_table.h"
-#include "bringup/identify/not_identified.h"
 #include "bringup/identify/output/identified_file.h"
+#include "bringup/identify/unidentified_parameters.h"
 #include "support/identify/cabled_arm.h"
 #include "support/identify/identified_arm.h"
 #include "support/identify/recorded_motion.h"
@@ -75,13 +75,13 @@ TEST(IdentifyJointFriction, IsFoundForEachJointInAdditionToTheTip) {
       gain.add(constants.gain[i], arm.gain[i] / mean);
       const double rotor = train.inertia[joint] / mean, pulls = train.stiffness[joint] / mean;
       const double link = arm.file.simulated.plant.mass / mean * found->lines.JTJ(joint, joint);
-      motor.add_beside_interval(cable.inertia, rotor);
-      stiffness.add_beside_interval(cable.stiffness, pulls);
+      motor.add_outside_interval(cable.inertia, rotor);
+      stiffness.add_outside_interval(cable.stiffness, pulls);
       resonance.add(cable.resonance,
                     std::sqrt(pulls * (1 / link + 1 / rotor)) / (2 * std::numbers::pi));
       dry.add(cable.coulomb, train.coulomb[joint] / mean);
       if (cable.viscous.value > 0) {
-        viscous.add_beside_interval(cable.viscous, train.viscous[joint] / mean);
+        viscous.add_outside_interval(cable.viscous, train.viscous[joint] / mean);
       }
     }
   }
@@ -99,7 +99,7 @@ TEST(IdentifyJointFriction, IsFoundForEachJointInAdditionToTheTip) {
 
 TEST(IdentifyJointFriction, IsNotReportedForFreeMotors) {
   const int arms = long_form() ? 40 : 0;
-  int told = 0;
+  int reported = 0;
   double most = 0;
   for (int k = 0; k < arms; ++k) {
     const auto seed = static_cast<std::uint64_t>(105 + k);
@@ -110,7 +110,7 @@ TEST(IdentifyJointFriction, IsNotReportedForFreeMotors) {
     }
     EXPECT_FALSE(found->play.friction.seen) << "arm " << k;
     if (!found->play.friction.fits) continue;
-    ++told;
+    ++reported;
     EXPECT_TRUE(leaves_open(
         *found, "Dry friction of joints in addition to that of the tip: none detected above"))
         << "arm " << k;
@@ -118,8 +118,8 @@ TEST(IdentifyJointFriction, IsNotReportedForFreeMotors) {
       most = std::max(most, one.value + one.plus_minus);
     }
   }
-  std::printf("none of more than %.3g mN m in any of %d of %d arms\n", 1e3 * most, told, arms);
-  EXPECT_GE(told, 0.75 * arms);
+  std::printf("none of more than %.3g mN m in any of %d of %d arms\n", 1e3 * most, reported, arms);
+  EXPECT_GE(reported, 0.75 * arms);
   EXPECT_LT(most, 0.15 * kRubs);
 }
 

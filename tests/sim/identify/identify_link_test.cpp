@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <string>
 
-#include "bringup/identify/not_identified.h"
 #include "bringup/identify/simulated_bench.h"
+#include "bringup/identify/unidentified_parameters.h"
 #include "bringup/report_timing.h"
 #include "bringup/watchdog_time.h"
 #include "support/identify/identified_arm.h"
@@ -137,7 +137,7 @@ TEST(WatchdogTime, ReportsWhyItIsUnknown) {
     found.reports = ReportTiming{};
     found.watchdog.emplace();
     found.watchdog->last = {.end = end, .time = 0.15, .way = 0.015, .force = 0.1};
-    for (const std::string& sentence : not_identified(found)) {
+    for (const std::string& sentence : unidentified_parameters(found)) {
       if (sentence.find("Watchdog of the firmware: ") == 0) return sentence;
     }
     return std::string();

@@ -13,9 +13,9 @@
 #include "bringup/identify/constants_table.h"
 #include "bringup/identify/link_inertia/link_constants.h"
 #include "bringup/identify/link_inertia/link_equations.h"
-#include "bringup/identify/not_identified.h"
 #include "bringup/identify/output/identified_file.h"
 #include "bringup/identify/record_motion.h"
+#include "bringup/identify/unidentified_parameters.h"
 #include "plant/link_mechanics.h"
 #include "read_scene.h"
 #include "support/identify/identified_arm.h"
@@ -279,7 +279,7 @@ TEST(IdentifiedLinks, AreNotReportedForAnArmWithoutLinks) {
     EXPECT_TRUE(found->against.empty()) << found->against.front();
     EXPECT_TRUE(found->constants.links_sought);
     EXPECT_FALSE(found->constants.links);
-    const auto open = not_identified(*found);
+    const auto open = unidentified_parameters(*found);
     EXPECT_TRUE(std::any_of(open.begin(), open.end(), [](const std::string& one) {
       return one.find("Links: none detected; over 6 places") == 0;
     }));

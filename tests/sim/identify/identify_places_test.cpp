@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "bringup/identify/link_inertia/link_fit.h"
-#include "bringup/identify/link_inertia/look_over_places.h"
+#include "bringup/identify/link_inertia/sweep_workspace.h"
 #include "bringup/identify/record_motion.h"
 #include "support/identify/identified_arm.h"
 #include "support/linked_arm.h"
@@ -24,9 +24,9 @@ using support::tip_masses;
 
 /// Fits the recorded motions of an arm at several places.
 driver::Result<LinkFit> fitted(const HiddenArm& arm, std::uint64_t seed, double seconds, int places,
-                               double force_most = kIdentifyForceMax) {
+                               double max_force = kIdentifyForceMax) {
   const std::atomic<bool> never{false};
-  auto bench = simulated_bench(arm.file, 0, false, force_most);
+  auto bench = simulated_bench(arm.file, 0, false, max_force);
   if (!bench) return bench.error();
   double most = 0;
   int outside = 0, pushed = 0;
@@ -37,10 +37,10 @@ driver::Result<LinkFit> fitted(const HiddenArm& arm, std::uint64_t seed, double 
     const bool is_outside = !arm.file.workspace.holds(Eigen::Vector3d(tick.p_WT.data()));
     outside += force > 0 && is_outside ? 1 : 0;
   });
-  const auto motions = record_places(
-      **bench, arm.file, {.seconds = seconds, .lead = 0.5, .force_most = force_most, .seed = seed},
-      places_in(arm.file, places), never);
-  EXPECT_LE(most, force_most);
+  const auto motions = record_at_points(
+      **bench, arm.file, {.seconds = seconds, .lead = 0.5, .max_force = max_force, .seed = seed},
+      sweep_points(arm.file, places), never);
+  EXPECT_LE(most, max_force);
   EXPECT_EQ(outside, 0);
   EXPECT_GT(pushed, 1000);
   EXPECT_TRUE((*bench)->device().zero_assured());
@@ -117,7 +117,7 @@ TEST(IdentifyPlaces, FindsTheMassAtUnvisitedPlaces) {
   }
   std::printf("worst %.3g; %d of %d intervals, %d of %d at the places\n", score.worst, score.held,
               score.all, held_places, all_places);
-  EXPECT_LT(score.worst, score.most);
+  EXPECT_LT(score.worst, score.max);
   EXPECT_GE(score.held, (long_form() ? 0.93 : 0.85) * score.all);
   EXPECT_GE(held_places, 0.85 * all_places);
 }
@@ -130,10 +130,10 @@ TEST(IdentifyPlaces, ReportsOneMassForAnArmWithoutLinks) {
     ASSERT_TRUE(found.ok()) << found.error().message;
     EXPECT_FALSE(found->links) << found->better;
     EXPECT_EQ(found->theta.segment<6>(LinkFit::kInertia), (Eigen::Matrix<double, 6, 1>::Zero()));
-    EXPECT_LT(found->change_most, 0.15);
+    EXPECT_LT(found->max_change, 0.15);
     const double mass = arm.file.simulated.plant.mass / mean_of_gains(arm);
     std::printf("%d: mass off by %.3g, change below %.2g, better %.3g\n", static_cast<int>(seed),
-                found->theta[LinkFit::kMass] / mass - 1, found->change_most, found->better);
+                found->theta[LinkFit::kMass] / mass - 1, found->max_change, found->better);
     EXPECT_NEAR(found->theta[LinkFit::kMass], mass, 0.005 * mass);
   }
 }
@@ -151,7 +151,7 @@ TEST(IdentifyPlaces, AreSkippedIfLinksCannotBeDetected) {
     EXPECT_TRUE(bench.ok());
     const std::atomic<bool> never{false};
     const auto over =
-        look_over_places(**bench, file, {.seconds = 2}, places, {}, {}, stretches, held, never);
+        sweep_workspace(**bench, file, {.seconds = 2}, places, {}, {}, stretches, held, never);
     if (!over || over->fit) return std::string("it went: ") + name;
     EXPECT_EQ((*bench)->true_force_max(), 0);
     return over->not_done;
@@ -170,7 +170,7 @@ TEST(IdentifyPlaces, StopEndsWithZeroForce) {
   int ticks = 0;
   (*bench)->watch([&](const driver::TickRecord&) { stop = ++ticks > 3000; });
   const auto motions =
-      record_places(**bench, arm.file, {.seconds = 2}, places_in(arm.file, 3), stop);
+      record_at_points(**bench, arm.file, {.seconds = 2}, sweep_points(arm.file, 3), stop);
   ASSERT_FALSE(motions.ok());
   EXPECT_NE(motions.error().message.find("Stopped"), std::string::npos);
   EXPECT_LT(ticks, 3010);

@@ -145,7 +145,7 @@ TEST(IdentifyRubbing, IsReportedForDirectionsThatDiffer) {
 }
 
 TEST(IdentifyRubbing, NamesTheJointThatSticks) {
-  RubbingJoints rubbing = with_rubbing().rubbing;
+  JointFrictionFit rubbing = with_rubbing().rubbing;
   const Eigen::Vector3d levers(0.14, 0.14, 0.14);
   rubbing.coulomb = {Estimate{0.001, 1e-5}, {0.02, 2e-4}, {0.0015, 1e-5}};
   EXPECT_EQ(rubbing.stuck(0.04, levers), 1);

@@ -96,7 +96,7 @@ TEST(Identify, FindsConstantsOrReportsTooMuchFriction) {
       EXPECT_GT(constants.gain[i].value, 0) << "the sign of motor " << i + 1;
     }
     // The interval of an effect too weak to be measured must contain it.
-    viscous_right += std::abs(constants.viscous.value / plant.viscous - 1) < viscous.most ||
+    viscous_right += std::abs(constants.viscous.value / plant.viscous - 1) < viscous.max ||
                              constants.viscous.holds(plant.viscous)
                          ? 1
                          : 0;
@@ -113,7 +113,7 @@ TEST(Identify, FindsConstantsOrReportsTooMuchFriction) {
     all += score->all;
   }
   for (const Score* score : {&mass, &coulomb, &gain, &delay}) {
-    EXPECT_LT(score->worst, score->most) << score->name;
+    EXPECT_LT(score->worst, score->max) << score->name;
   }
   EXPECT_LT(refused, 0.5 * arms);
   EXPECT_GE(viscous_right, 0.95 * (arms - refused));

@@ -73,7 +73,7 @@ bool grows(const scene::ArmFile& arm, const Pace& pace, double stiffness) {
 void expect_edge(const Pace& pace) {
   const scene::ArmFile arm = arm_at(pace);
   const double law =
-      stability::carried_by(arm, stability::loop_times(arm, pace.rate), 1000, pace.damping)
+      stability::stability_limits(arm, stability::loop_times(arm, pace.rate), 1000, pace.damping)
           .stiffness_exact;
   const std::string cell =
       std::to_string(pace.rate) + " Hz, reports " + std::to_string(pace.report_ns) + " ns, wire " +
@@ -121,7 +121,8 @@ TEST(ReportPace, LawHoldsForWallsWithDamping) {
 TEST(ReportPace, FasterLoopGainsNothingBeyondTheReports) {
   const scene::ArmFile arm = arm_at({.report_ns = 1'000'000, .delay_out_ns = 1'000'000});
   const auto edge = [&arm](double rate) {
-    return stability::carried_by(arm, stability::loop_times(arm, rate), 1000, 0).stiffness_exact;
+    return stability::stability_limits(arm, stability::loop_times(arm, rate), 1000, 0)
+        .stiffness_exact;
   };
   EXPECT_NEAR(edge(10'000) / edge(1000), 1, 1e-6);
 }

@@ -12,7 +12,7 @@
 #include "support/identify/recorded_motion.h"
 #include "support/long_form.h"
 #include "twin/compare_twin.h"
-#include "twin/relive.h"
+#include "twin/replay.h"
 #include "twin/twin_files.h"
 #include "twin/twin_forces.h"
 #include "twin/twin_motion.h"
@@ -37,7 +37,7 @@ TwinResult both_ways(const session::Recording& recording, const scene::ArmFile& 
 /// Returns the error of a recording replayed on the arm of a file, relative to the error from
 /// encoder steps.
 double left_by(const TwinMotion& motion, const scene::ArmFile& file) {
-  auto relive = Relive::make(motion, 0.2);
+  auto relive = Replay::make(motion, 0.2);
   if (!relive) {
     ADD_FAILURE() << relive.error().message;
     return HUGE_VAL;

@@ -48,7 +48,7 @@ TwinResult compared(const scene::ArmFile& file) {
 /// Returns the complete text of the command about a comparison.
 std::string said_of(const TwinResult& result) {
   std::string all;
-  for (const std::string& sentence : result.comparison.told) all += sentence + "\n";
+  for (const std::string& sentence : result.comparison.messages) all += sentence + "\n";
   return all + twin_table(result.comparison) + force_table(result.forces);
 }
 

@@ -97,7 +97,7 @@ std::vector<Eigen::Vector3d> free_motion(const scene::ArmFile& file, const Eigen
     return p_BT;
   }
   const std::atomic<bool> never{false};
-  const auto motions = bringup::record_places(
+  const auto motions = bringup::record_at_points(
       **bench, file, {.seconds = 10, .lead = 0, .seed = seed, .share = share},
       {file.workspace.middle()}, never);
   EXPECT_TRUE(motions.ok()) << motions.error().message;
@@ -126,20 +126,20 @@ struct Worst {
 };
 
 void try_twin(const HiddenAndTwin& both, std::uint64_t seed, Worst& worst) {
-  const auto true_of = twin_prediction(both.arm), told = twin_prediction(both.twin);
+  const auto true_of = twin_prediction(both.arm), predicted = twin_prediction(both.twin);
   ASSERT_TRUE(true_of.ok()) << true_of.error().message;
-  ASSERT_TRUE(told.ok()) << told.error().message;
+  ASSERT_TRUE(predicted.ok()) << predicted.error().message;
   const auto off = [](double value, double truth) { return std::abs(value / truth - 1); };
-  const double wall = off(told->stiffest_wall, true_of->stiffest_wall);
-  const double restitution = off(told->bounce.restitution, true_of->bounce.restitution);
-  const double flight = off(told->bounce.flight, true_of->bounce.flight);
+  const double wall = off(predicted->stiffest_wall, true_of->stiffest_wall);
+  const double restitution = off(predicted->bounce.restitution, true_of->bounce.restitution);
+  const double flight = off(predicted->bounce.flight, true_of->bounce.flight);
   const Eigen::Vector3d share = probed_share(both.arm);
   const double motion =
       apart(free_motion(both.arm, share, ~seed), free_motion(both.twin, share, ~seed));
   if (!(wall < 0.05)) {
     ++worst.walls_off;
     std::printf("arm %d: predicted wall of %.0f N/m, true %.0f\n", static_cast<int>(seed),
-                told->stiffest_wall, true_of->stiffest_wall);
+                predicted->stiffest_wall, true_of->stiffest_wall);
   }
   EXPECT_LT(wall, 0.1) << "arm " << seed;
   EXPECT_LT(restitution, 0.05) << "arm " << seed;
@@ -237,7 +237,7 @@ TEST(TwinPrediction, HoldsForArmsWithJointFriction) {
     const auto seed = static_cast<std::uint64_t>(8000 + k);
     const auto both = identified(support::rigid_rubbing_arm(seed), seed);
     ASSERT_TRUE(both.ok()) << "arm " << seed << ": " << both.error().message;
-    EXPECT_TRUE(both->twin.simulated.drive_train.joints_rub()) << "arm " << seed;
+    EXPECT_TRUE(both->twin.simulated.drive_train.has_joint_friction()) << "arm " << seed;
     try_twin(*both, seed, worst);
   }
   tell("hidden arms whose joints rub", kArms, worst);

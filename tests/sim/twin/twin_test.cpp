@@ -15,7 +15,7 @@
 #include "support/refuses.h"
 #include "support/scratch.h"
 #include "twin/compare_twin.h"
-#include "twin/relive.h"
+#include "twin/replay.h"
 #include "twin/twin_files.h"
 #include "twin/twin_motion.h"
 
@@ -139,7 +139,7 @@ TEST(Twin, ArmWithJointFrictionIsReproduced) {
   const HiddenArm arm = support::rigid_rubbing_arm(8000);
   const auto recording = recording_of(arm.file, "vintage_phantom", 1, 3);
   const TwinMotion motion = twin_motion(recording, arm.file).value();
-  auto relive = Relive::make(motion, 0.5);
+  auto relive = Replay::make(motion, 0.5);
   ASSERT_TRUE(relive.ok()) << relive.error().message;
   EXPECT_LT((*relive)(arm.file)->rms(), 1.5 * motion.step_error);
   scene::ArmFile wrong = arm.file;
@@ -224,8 +224,8 @@ TEST(Twin, HandlesMissingTicksAndLateReports) {
   EXPECT_LT(found.error_rms, 1.2 * found.step_error);
   EXPECT_LT(found.seconds, 5);
   EXPECT_GT(found.seconds, 4);
-  ASSERT_EQ(found.told.size(), 1U);
-  EXPECT_NE(found.told.front().find("truncated"), std::string::npos);
+  ASSERT_EQ(found.messages.size(), 1U);
+  EXPECT_NE(found.messages.front().find("truncated"), std::string::npos);
 }
 
 TEST(Twin, PolhemIsReproducedEquallyWell) {

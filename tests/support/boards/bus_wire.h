@@ -67,12 +67,12 @@ class BusWire final : public driver::Transport {
   }
 
   driver::TransportStatus write(std::span<const std::byte> report) noexcept override {
-    constexpr int kFramesMost = 5000;  // the kernel's time limit for a HID arm
+    constexpr int kFramesMax = 5000;  // the kernel's time limit for a HID arm
     pass_frames();
     std::array<std::byte, device_sim::usb::UsbDevice::kPacketMax> padded{};
     std::copy_n(report.begin(), std::min(report.size(), padded.size()), padded.begin());
     const std::size_t size = finder_ ? report.size() : way_.report_size;
-    for (int i = 0; i < kFramesMost && !lost_; ++i) {
+    for (int i = 0; i < kFramesMax && !lost_; ++i) {
       const auto result = device_.out(way_.out, std::span<const std::byte>(padded).first(size));
       if (result.answer == device_sim::usb::Answer::kDone) return driver::TransportStatus::kOk;
       lost_ = result.answer == device_sim::usb::Answer::kGone;
@@ -102,8 +102,8 @@ class BusWire final : public driver::Transport {
       const auto result = device_.in(way_.in, packet);
       lost_ = result.answer == device_sim::usb::Answer::kGone;
       if (result.answer != device_sim::usb::Answer::kDone || result.size == 0) return;
-      const std::size_t most = finder_ ? device_sim::usb::UsbDevice::kPacketMax : way_.report_size;
-      if (result.size > most) return;
+      const std::size_t max = finder_ ? device_sim::usb::UsbDevice::kPacketMax : way_.report_size;
+      if (result.size > max) return;
       take(std::span<const std::byte>(packet).first(result.size));
     }
   }

@@ -28,10 +28,10 @@ class UsbHostLine final : public driver::SerialLine {
     return request(0, 1) && request(0, 2);
   }
   bool write(std::span<const std::byte> bytes) override {
-    const std::uint32_t told = host_.tell(2, bytes);
+    const std::uint32_t sequence = host_.tell(2, bytes);
     for (int i = 0; i < 1000; ++i) {
       step();
-      if (const auto done = host_.done(told)) return done->status == 0;
+      if (const auto done = host_.done(sequence)) return done->status == 0;
     }
     return false;
   }

@@ -70,13 +70,13 @@ class UsbHostTransport final : public driver::Transport {
     std::vector<std::byte> bytes(report.begin(), report.end());
     if (!finder_) bytes.resize(std::max<std::size_t>(bytes.size(), size_));
     bool refused = false;
-    if (told_ != 0) {
-      const auto done = host_.done(told_);
+    if (written_ != 0) {
+      const auto done = host_.done(written_);
       refused = !done || done->status != 0;
       if (!done) return driver::TransportStatus::kRefused;
       if (done->status != 0) clear_halt(out_);
     }
-    told_ = host_.tell(out_, bytes);
+    written_ = host_.tell(out_, bytes);
     if (finder_) host_.send_bulk(clock_.now_ns());
     return refused ? driver::TransportStatus::kRefused : driver::TransportStatus::kOk;
   }
@@ -116,7 +116,7 @@ class UsbHostTransport final : public driver::Transport {
   std::uint8_t in_, out_;
   std::optional<driver::FrameFinder> finder_;
   std::array<std::uint32_t, 2> asked_{};
-  std::uint32_t told_ = 0;
+  std::uint32_t written_ = 0;
   std::vector<std::vector<std::byte>> reports_;
 };
 

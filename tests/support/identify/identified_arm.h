@@ -11,8 +11,8 @@
 
 #include "bringup/identify/arm_constants.h"
 #include "bringup/identify/identify.h"
-#include "bringup/identify/not_identified.h"
 #include "bringup/identify/simulated_bench.h"
+#include "bringup/identify/unidentified_parameters.h"
 #include "support/identify/hidden_arm.h"
 
 namespace thimble::support {
@@ -50,7 +50,7 @@ inline driver::Result<bringup::Identified> identified(const HiddenArm& arm,
 
 /// Returns whether the list of unidentified parameters names this one.
 inline bool leaves_open(const bringup::Identified& found, const std::string& what) {
-  const auto sentences = bringup::not_identified(found);
+  const auto sentences = bringup::unidentified_parameters(found);
   return std::any_of(sentences.begin(), sentences.end(),
                      [&](const std::string& one) { return one.find(what) != std::string::npos; });
 }
@@ -58,28 +58,28 @@ inline bool leaves_open(const bringup::Identified& found, const std::string& wha
 /// Errors of the estimates of one constant, and how often their intervals contained the truth.
 struct Score {
   const char* name;
-  double most;       // allowed error, relative or in s
+  double max;        // allowed error, relative or in s
   double worst = 0;  // largest abs(estimate - truth), in the same unit
   int held = 0, all = 0;
-  int missed = 0;  // neither within `most` of the truth nor with the truth in the interval
+  int missed = 0;  // neither within `max` of the truth nor with the truth in the interval
 
   void add(const bringup::Estimate& estimate, double truth, bool relative = true) {
     const double off = std::abs(estimate.value - truth) / (relative ? std::abs(truth) : 1);
     worst = std::max(worst, off);
     ++all;
     held += estimate.holds(truth) ? 1 : 0;
-    missed += off > most && !estimate.holds(truth) ? 1 : 0;
+    missed += off > max && !estimate.holds(truth) ? 1 : 0;
   }
 
   /// Adds the error of an estimate only if its interval does not contain the truth.
-  void add_beside_interval(const bringup::Estimate& estimate, double truth, bool relative = true) {
+  void add_outside_interval(const bringup::Estimate& estimate, double truth, bool relative = true) {
     const double before = worst;
     add(estimate, truth, relative);
     if (estimate.holds(truth)) worst = before;
   }
 
-  void tell() const {
-    std::printf("%-9s worst %.3g of %.3g, %d of %d intervals hold the truth\n", name, worst, most,
+  void print() const {
+    std::printf("%-9s worst %.3g of %.3g, %d of %d intervals hold the truth\n", name, worst, max,
                 held, all);
   }
 };
@@ -90,8 +90,8 @@ struct Score {
 inline void expect_scores(std::initializer_list<const Score*> scores, int few) {
   int held = 0, all = 0;
   for (const Score* score : scores) {
-    score->tell();
-    EXPECT_LT(score->worst, score->most) << score->name;
+    score->print();
+    EXPECT_LT(score->worst, score->max) << score->name;
     held += score->held;
     all += score->all;
     if (score->all > few) {

@@ -50,7 +50,7 @@ struct MotionRun {
   device_sim::WiringSettings wiring;
   MotionScene scene;
   bool energy_stage = true;
-  double hold_most = 10;  ///< s
+  double max_hold = 10;  ///< s
   std::uint64_t seed = 1;
   /// Targets of the hand: times (s) and points of the world (m).
   std::vector<std::pair<double, Eigen::Vector3d>> way;
@@ -60,9 +60,9 @@ struct MotionRun {
   // Results.
   driver::Fault fault = driver::Fault::kNone;
   std::uint64_t ticks = 0;
-  double depth = 0;       ///< Depth of the true tip at the end, m.
-  double speed = 0;       ///< Speed at the end, m/s.
-  double force_most = 0;  ///< N
+  double depth = 0;      ///< Depth of the true tip at the end, m.
+  double speed = 0;      ///< Speed at the end, m/s.
+  double max_force = 0;  ///< N
 
   void run(double duration);
 };
@@ -122,9 +122,9 @@ class Law {
     const double grip = std::min(scene_.stiffness, 500.0);
     Eigen::Vector3d drag = grip * (stuck_at_ - state.p_WT);
     drag.z() = 0;
-    const double most = scene_.friction * normal;
-    if (drag.norm() > most) {
-      drag *= most / drag.norm();
+    const double max = scene_.friction * normal;
+    if (drag.norm() > max) {
+      drag *= max / drag.norm();
       stuck_at_ = state.p_WT + drag / grip;
     }
     return f + drag + Eigen::Vector3d(0, 0, normal);
@@ -153,7 +153,7 @@ inline void MotionRun::run(double duration) {
                                              Eigen::Vector3d(-0.22, 0, -0.08),
                                              Eigen::Vector3d(-0.2045, 0, -0.0325)};
   settings.p_WB = bases[static_cast<std::size_t>(arm)];
-  settings.motion = {.mass = mass, .delay_ticks = 1, .hold_most = hold_most};
+  settings.motion = {.mass = mass, .delay_ticks = 1, .max_hold = max_hold};
   if (energy_stage) {
     settings.energy = {.stage = driver::EnergyStage::kPassivity,
                        .mass = mass,
@@ -202,7 +202,7 @@ inline void MotionRun::run(double duration) {
     clock.sleep_until_ns(tick * 1'000'000);
     const driver::DeviceState& state = device.read(clock.now_ns(), clock.now_ns());
     device.write({.f_T_W = law(state), .touch = {}});
-    force_most = std::max(force_most, device.f_sent_W().norm());
+    max_force = std::max(max_force, device.f_sent_W().norm());
     ++ticks;
     fault = device.fault();
     if (fault != driver::Fault::kNone) break;

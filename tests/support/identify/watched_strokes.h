@@ -400,7 +400,7 @@ inline StrokedArm stroked_arm(MotionArm kind) {
                 .onset = 0.002,
                 .speed_floor = 0.02,
                 .delay_ticks = 1};
-  arm.watch = {.mass = mass, .delay_ticks = 1, .hold_most = 10};
+  arm.watch = {.mass = mass, .delay_ticks = 1, .max_hold = 10};
   arm.plant = {.mass = mass, .viscous = 0.005, .coulomb = 0.04};
   return arm;
 }

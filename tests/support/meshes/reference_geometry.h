@@ -50,10 +50,10 @@ inline bool is_inside(const TriangleMesh& mesh, const Vector3d& p) {
 inline Vector3d nearest_on_triangle(const Vector3d& p, const Vector3d& a, const Vector3d& b,
                                     const Vector3d& c) {
   const Vector3d n = (b - a).cross(c - a);
-  const Vector3d foot = p - n * (n.dot(p - a) / n.squaredNorm());
-  if (n.dot((b - a).cross(foot - a)) >= 0 && n.dot((c - b).cross(foot - b)) >= 0 &&
-      n.dot((a - c).cross(foot - c)) >= 0) {
-    return foot;
+  const Vector3d on_plane = p - n * (n.dot(p - a) / n.squaredNorm());
+  if (n.dot((b - a).cross(on_plane - a)) >= 0 && n.dot((c - b).cross(on_plane - b)) >= 0 &&
+      n.dot((a - c).cross(on_plane - c)) >= 0) {
+    return on_plane;
   }
   const auto on_side = [&p](const Vector3d& from, const Vector3d& to) -> Vector3d {
     const Vector3d side = to - from;

@@ -59,10 +59,10 @@ int hid_read_timeout(hid_device*, unsigned char* data, std::size_t length, int m
     return -1;
   }
   if (!hid.script.empty()) {
-    const std::size_t told = hid.script[0];
-    std::copy_n(hid.script.data() + 1, std::min(told, length), data);
-    hid.script = hid.script.subspan(1 + told);
-    return static_cast<int>(std::min(told, length));
+    const std::size_t report_size = hid.script[0];
+    std::copy_n(hid.script.data() + 1, std::min(report_size, length), data);
+    hid.script = hid.script.subspan(1 + report_size);
+    return static_cast<int>(std::min(report_size, length));
   }
   int& left = hid.reports == 0 && milliseconds > 0 ? hid.coming : hid.reports;
   if (left == 0) return 0;

@@ -167,7 +167,7 @@ int dhdGetPosition(double* x, double* y, double* z, char id) {
                                    : std::chrono::microseconds(250));
   const Call call("dhdGetPosition", id);
   const Eigen::Vector3d& p = mock().arm.p_BT;
-  *x = mock().tells_nan ? std::numeric_limits<double>::quiet_NaN() : p.x();
+  *x = mock().reports_nan ? std::numeric_limits<double>::quiet_NaN() : p.x();
   *y = p.y();
   *z = p.z();
   return call.answer();

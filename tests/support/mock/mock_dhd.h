@@ -18,10 +18,10 @@ struct MockDhd {
   int arms = 1;             ///< Number of arms found.
   bool initialised = true;  ///< The arm knows its zero.
   bool wrist = false, gripper = false;
-  bool held = false;       ///< Another program uses it.
-  std::string fails;       ///< The function that fails from now on.
-  bool tells_nan = false;  ///< Positions are NaN.
-  bool late = false;       ///< Exchanges take 60 ms.
+  bool held = false;         ///< Another program uses it.
+  std::string fails;         ///< The function that fails from now on.
+  bool reports_nan = false;  ///< Positions are NaN.
+  bool late = false;         ///< Exchanges take 60 ms.
 
   bool open = false, watchdog = false, gravity = false, brakes = true, force_on = false;
   bool expert = false;   ///< Expert functions are enabled.
@@ -38,7 +38,7 @@ struct MockDhd {
     arm = PoseArm();
     arms = 1;
     initialised = true;
-    wrist = gripper = held = tells_nan = late = expert = tripped = false;
+    wrist = gripper = held = reports_nan = late = expert = tripped = false;
     fails.clear();
     open = watchdog = gravity = force_on = asked_zero = false;
     brakes = true;

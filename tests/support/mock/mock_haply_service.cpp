@@ -196,18 +196,19 @@ class MockHaplyService::Server {
     const json message = json::parse(text, nullptr, false);
     const json force =
         message.value(json::json_pointer("/inverse3/0/commands/set_cursor_force"), json());
-    const json told =
+    const json commanded =
         force.is_object() ? force.value(old_spelling_ ? "values" : "vector", json()) : json();
     const bool right = message.value(json::json_pointer("/inverse3/0/device_id"), "") == kId &&
                        message["inverse3"].size() == 1 &&
-                       message["inverse3"][0]["commands"].size() == 1 && told.is_object() &&
-                       told.size() == 3 && told["x"].is_number() && told["y"].is_number() &&
-                       told["z"].is_number();
+                       message["inverse3"][0]["commands"].size() == 1 && commanded.is_object() &&
+                       commanded.size() == 3 && commanded["x"].is_number() &&
+                       commanded["y"].is_number() && commanded["z"].is_number();
     if (!right) {
       ++log_.wrong;
       return;
     }
-    arm_.f_T_B = {told["x"].get<double>(), told["y"].get<double>(), told["z"].get<double>()};
+    arm_.f_T_B = {commanded["x"].get<double>(), commanded["y"].get<double>(),
+                  commanded["z"].get<double>()};
     log_.taken_B.push_back(arm_.f_T_B);
   }
 

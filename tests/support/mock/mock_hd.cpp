@@ -138,7 +138,7 @@ void hdGetDoublev(unsigned name, double* values) {
   const auto& arm = mock().arm;
   if (name == 0x2050) {
     for (int i = 0; i < 3; ++i) values[i] = 1000 * arm.p_BT[i];
-    if (mock().tells_nan) values[1] = std::numeric_limits<double>::quiet_NaN();
+    if (mock().reports_nan) values[1] = std::numeric_limits<double>::quiet_NaN();
   } else if (name == 0x2051) {
     for (int i = 0; i < 3; ++i) values[i] = 1000 * arm.v_BT[i];
   } else if (name == 0x2052) {

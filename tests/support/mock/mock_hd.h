@@ -17,11 +17,11 @@ struct MockHd {
   PoseArm arm;        ///< In m.
   bool there = true;  ///< A device is present.
   bool calibrated = true;
-  int styles = 4;          ///< Of calibration; 4: inkwell.
-  double nominal = 3.3;    ///< N
-  unsigned error = 0;      ///< Error at the end of each frame.
-  bool tells_nan = false;  ///< Positions are NaN.
-  bool late = false;       ///< The scheduler runs every 60 ms.
+  int styles = 4;            ///< Of calibration; 4: inkwell.
+  double nominal = 3.3;      ///< N
+  unsigned error = 0;        ///< Error at the end of each frame.
+  bool reports_nan = false;  ///< Positions are NaN.
+  bool late = false;         ///< The scheduler runs every 60 ms.
 
   bool open = false, frame = false, scheduler = false, force_on = false, asked_calibration = false;
   int opened = 0, closed = 0, frames = 0, calibrations = 0;
@@ -37,7 +37,7 @@ struct MockHd {
     styles = 4;
     nominal = 3.3;
     error = pending_error = 0;
-    tells_nan = late = open = frame = scheduler = force_on = asked_calibration = false;
+    reports_nan = late = open = frame = scheduler = force_on = asked_calibration = false;
     opened = closed = frames = calibrations = 0;
     taken.clear();
     wrong.clear();

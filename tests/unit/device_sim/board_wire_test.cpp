@@ -24,7 +24,7 @@ using support::refuses;
 
 SimulatedArmSettings speaking(ArmKind kind) {
   SimulatedArmSettings settings = phantom_like();
-  settings.firmware.speaks = kind;
+  settings.firmware.protocol = kind;
   settings.firmware.line_model = 3;
   return settings;
 }

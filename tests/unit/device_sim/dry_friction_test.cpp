@@ -56,15 +56,16 @@ TEST(DryFriction, TipFrictionIsTheUniqueSolution) {
     const Eigen::Matrix3d inertia = root * root.transpose() + 0.05 * Eigen::Matrix3d::Identity();
     const Eigen::Vector3d momentum = any();
     const Eigen::Vector3d before = trial % 3 == 0 ? Eigen::Vector3d(0, 0, 0) : any();
-    constexpr double kMost = 0.3;
-    const Eigen::Vector3d v = velocity_after_friction(inertia, momentum, {.tip = kMost}, before);
+    constexpr double kTipFriction = 0.3;
+    const Eigen::Vector3d v =
+        velocity_after_friction(inertia, momentum, {.tip = kTipFriction}, before);
     const Eigen::Vector3d friction = momentum - inertia * v;
     for (int i = 0; i < 3; ++i) {
       if (v[i] == 0) {
         ++held;
-        ASSERT_LE(std::abs(friction[i]), kMost * (1 + 1e-9));
+        ASSERT_LE(std::abs(friction[i]), kTipFriction * (1 + 1e-9));
       } else {
-        ASSERT_NEAR(friction[i], std::copysign(kMost, v[i]), 1e-9);
+        ASSERT_NEAR(friction[i], std::copysign(kTipFriction, v[i]), 1e-9);
         turned += v[i] * before[i] < 0 ? 1 : 0;
       }
     }

@@ -63,7 +63,7 @@ class HidArmTest : public testing::TestWithParam<const char*> {
     return host_->ask(hid_->board().in & 0x0fU, static_cast<std::uint32_t>(size()));
   }
   void tell(const std::vector<std::byte>& bytes) { host_->tell(hid_->board().out, bytes); }
-  bool answers() const { return hid_->board().speech == HidSpeech::kAnswers; }
+  bool answers() const { return hid_->board().report_mode == HidReportMode::kAnswers; }
   /// Sends a message and reads a report in the same frame. A board that answers returns the report
   /// of the previous message.
   std::optional<support::UsbHost::Done> exchange(std::int16_t mA) {

@@ -111,9 +111,9 @@ TEST(IrregularWire, RefusesInvalidProbabilities) {
 
 /// Moves the arm to and fro and compares its counters with those of an arm that misses no edge.
 struct Missed {
-  std::int64_t passed = 0;      // edges of all encoders
-  std::uint64_t missed = 0;     // counted by the board
-  std::int64_t wrong_most = 0;  // counts
+  std::int64_t passed = 0;     // edges of all encoders
+  std::uint64_t missed = 0;    // counted by the board
+  std::int64_t max_error = 0;  // counts
   driver::hfab::InputReport last{};
 };
 
@@ -138,8 +138,8 @@ Missed moved_with(double missed_edges) {
     if (!seen || !truth) continue;
     for (std::size_t i = 0; i < 3; ++i) {
       found.passed += std::abs(truth->counts[i] - before.counts[i]);
-      found.wrong_most =
-          std::max<std::int64_t>(found.wrong_most, std::abs(seen->counts[i] - truth->counts[i]));
+      found.max_error =
+          std::max<std::int64_t>(found.max_error, std::abs(seen->counts[i] - truth->counts[i]));
     }
     before = *truth;
     found.last = *seen;
@@ -155,7 +155,7 @@ TEST(MissedEdges, FrequencyMatchesTheSetting) {
   EXPECT_GT(passed, 5000);
   EXPECT_NEAR(static_cast<double>(found.missed), kChance * passed,
               5 * std::sqrt(kChance * (1 - kChance) * passed));
-  EXPECT_GT(found.wrong_most, 0.25 * kChance * passed / 6);
+  EXPECT_GT(found.max_error, 0.25 * kChance * passed / 6);
 }
 
 TEST(MissedEdges, CounterThatMissesAllEdgesDoesNotMove) {

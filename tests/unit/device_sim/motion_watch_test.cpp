@@ -65,7 +65,7 @@ TEST(ReversedMotors, AreNotReportedInStrokesOfASoundArm) {
       MotionRun sound = strokes(arm, speed);
       sound.run(4);
       EXPECT_EQ(sound.fault, Fault::kNone) << name_of(arm) << ' ' << speed;
-      EXPECT_GT(sound.force_most, 2) << "there was contact";
+      EXPECT_GT(sound.max_force, 2) << "there was contact";
     }
   }
 }
@@ -76,7 +76,7 @@ TEST(ReversedMotors, OneReversedJointIsFoundInManyStrokes) {
   constexpr std::array<int, 3> kJoints{1, 2, 2};
   // Found in 197, 104 and 170 of 200 strokings of 3.5 s. If another joint holds the tip, the fault
   // is not visible.
-  constexpr std::array<int, 3> kFoundLeast{185, 90, 155};
+  constexpr std::array<int, 3> kFoundMin{185, 90, 155};
   for (const MotionArm arm : kMotionArms) {
     const auto at = static_cast<std::size_t>(arm);
     int all = 0;
@@ -95,7 +95,7 @@ TEST(ReversedMotors, OneReversedJointIsFoundInManyStrokes) {
                   name_of(arm).c_str(), kJoints[at] + 1, speed, found, 1e3 * deepest, fastest);
       all += found;
     }
-    EXPECT_GE(all, kFoundLeast[at]) << name_of(arm) << " of 200";
+    EXPECT_GE(all, kFoundMin[at]) << name_of(arm) << " of 200";
   }
 }
 
@@ -104,7 +104,7 @@ TEST(MotionWatch, HandOnASoundArmIsNoFault) {
   for (std::uint64_t seed = 0; seed < 600; ++seed) {
     MotionRun run = support::any_hand(seed, 2);
     run.run(2);
-    touches += run.force_most > 1.5 ? 1 : 0;
+    touches += run.max_force > 1.5 ? 1 : 0;
     // A hand that throws the tip may exceed the speed limit of the gate, but causes no other fault.
     if (run.fault == Fault::kOverSpeed) continue;
     EXPECT_EQ(run.fault, Fault::kNone) << "seed " << seed << ": " << name(run.fault);
@@ -144,7 +144,7 @@ TEST(FrozenEncoder, IsFoundIfTheForceOnItsJointChanges) {
     freeze(run, joint, kFrom);
     // At home only the PHANTOM's link B determines the depth, so the force does not change.
     const bool steady = arm == MotionArm::kVintage;
-    run.hold_most = steady ? 1.5 : 10;
+    run.max_hold = steady ? 1.5 : 10;
     run.run(4);
     std::printf("%-16s joint %zu: %s after %d ms\n", name_of(arm).c_str(), joint + 1,
                 std::string(name(run.fault)).c_str(), static_cast<int>(run.ticks) - kFrom);
@@ -175,18 +175,18 @@ TEST(FrozenEncoder, IsNotReportedInAPureYawStroke) {
   MotionRun run = yaw_strokes();
   run.run(4);
   EXPECT_EQ(run.fault, Fault::kNone);
-  EXPECT_GT(run.force_most, 1.2);
+  EXPECT_GT(run.max_force, 1.2);
 }
 
 TEST(FrozenEncoder, HoldsASteadyForceForABoundedTime) {
   MotionRun run = yaw_strokes();
   freeze(run, 1, 1000);
   MotionRun patient = run;
-  run.hold_most = 1.5;
+  run.max_hold = 1.5;
   run.run(4);
   EXPECT_EQ(run.fault, Fault::kEncoderFrozen);
   EXPECT_LT(run.ticks, 2700u);
-  patient.hold_most = 10;
+  patient.max_hold = 10;
   patient.run(4);
   EXPECT_EQ(patient.fault, Fault::kNone);
 }
@@ -255,15 +255,15 @@ TEST(FrozenEncoder, OfALinkIsFoundInRandomStrokes) {
 TEST(UnchangedCounts, EndALongHeldForce) {
   MotionRun run;
   run.hand.tremor_amplitude = 0;
-  run.hold_most = 2;
+  run.max_hold = 2;
   run.way = {{0, {0, 0, 0.005}}, {0.5, {0, 0, 0.005}}, {0.7, {0, 0, -0.01}}};
   MotionRun short_of_it = run;
   run.run(5);
   EXPECT_EQ(run.fault, Fault::kCountsUnchanged);
-  EXPECT_GT(run.force_most, 1.5);
+  EXPECT_GT(run.max_force, 1.5);
   EXPECT_GT(run.ticks, 2700u);
   EXPECT_LT(run.ticks, 3100u) << "it comes to rest within 0.3 s, and the force is off 2 s later";
-  short_of_it.hold_most = 10;
+  short_of_it.max_hold = 10;
   short_of_it.run(5);
   EXPECT_EQ(short_of_it.fault, Fault::kNone);
 }

@@ -76,7 +76,7 @@ TEST(MotorHeat, RunsAwayAboveTheCriticalCurrent) {
         1.1 * some_motors().continuous_current.z() / some_motors().continuous_current.x() * most},
        1000);
   EXPECT_NEAR(heat.rise().x(), 0.64 / (1 - 0.64) / kCopper, 2);
-  EXPECT_EQ(heat.rise().z(), MotorHeatSettings::kRiseMost);
+  EXPECT_EQ(heat.rise().z(), MotorHeatSettings::kRiseMax);
 }
 
 TEST(MotorHeat, NeverExceedsTheModelOfTheDriver) {

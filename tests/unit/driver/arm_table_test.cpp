@@ -50,7 +50,7 @@ TEST(ArmTable, MakesAnArmForEveryGeometryAndProtocol) {
       if (shape.built_in == nullptr) continue;
       const ArmModel model = shape.built_in();
       const auto arm = make_arm(row.kind, model);
-      if (row.has_own_link() || std::holds_alternative<ToldArm>(model.geometry)) {
+      if (row.has_own_link() || std::holds_alternative<VendorPoseArm>(model.geometry)) {
         EXPECT_EQ(arm, nullptr) << row.protocol << shape.name;
         continue;
       }

@@ -69,7 +69,7 @@ class ReplugTest : public ::testing::Test {
     Sink sink{*this};
     const std::atomic<bool> stop{false};
     return run_servo(*device_, clock_, ForceLaw(push), TickSink(sink),
-                     {.ticks = ticks, .outlive_faults = true}, stop);
+                     {.ticks = ticks, .continue_after_faults = true}, stop);
   }
 
   void offer(support::Wire& wire) {

@@ -79,7 +79,8 @@ class SuspendTest : public ::testing::Test {
     auto law = [](const DeviceState&) noexcept {
       return ForceCommand{.f_T_W = {3.4, 0, 0}, .touch = {}};
     };
-    ServoLoop loop(*device_, clock, ForceLaw(law), TickSink(sleep_), {.outlive_faults = true});
+    ServoLoop loop(*device_, clock, ForceLaw(law), TickSink(sleep_),
+                   {.continue_after_faults = true});
     const std::atomic<bool> stop{false};
     while (sleep_.ticks.size() < sleep_.ticks.capacity()) loop.tick(stop);
   }

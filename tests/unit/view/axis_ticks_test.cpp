@@ -37,22 +37,22 @@ TEST(AxisTicks, FillTheRangeWithoutOverlap) {
   std::uniform_real_distribution<double> place(-3, 3);
   for (int i = 0; i < 2000; ++i) {
     const double width = std::pow(10, size(random));
-    const double least = place(random) * width;
-    const double most = least + width;
+    const double min = place(random) * width;
+    const double max = min + width;
     const auto room = static_cast<std::size_t>(3 + i % 8);
     const double rim = 1e-5 * width;
-    const AxisTicks within = ticks_within(least, most, room);
+    const AxisTicks within = ticks_within(min, max, room);
     ASSERT_GE(within.count, 1U);
     ASSERT_LE(within.count, room);
-    EXPECT_GE(within.first, least - rim);
-    EXPECT_LE(within.last(), most + rim);
+    EXPECT_GE(within.first, min - rim);
+    EXPECT_LE(within.last(), max + rim);
     // With the next smaller round step they would overlap.
     EXPECT_GT(static_cast<double>(within.count) * 2.5 * within.step, width - 2 * within.step);
-    const AxisTicks around = ticks_around(least, most, room);
+    const AxisTicks around = ticks_around(min, max, room);
     ASSERT_GE(around.count, 2U);
     ASSERT_LE(around.count, room);
-    EXPECT_LE(around.first, least + rim);
-    EXPECT_GE(around.last(), most - rim);
+    EXPECT_LE(around.first, min + rim);
+    EXPECT_GE(around.last(), max - rim);
     for (const AxisTicks& ticks : {within, around}) {
       const double power = std::pow(10, std::floor(std::log10(ticks.step) + 1e-9));
       const double digit = ticks.step / power;

@@ -26,7 +26,7 @@ class Clockwork final : public TouchSource {
   const std::string& notice() const override { return notice_; }
   std::string name() const override { return "clockwork"; }
   PlayHead& head() override { return head_; }
-  double beside(int steps) const override { return head_.time() + 0.001 * steps; }
+  double time_of_step(int steps) const override { return head_.time() + 0.001 * steps; }
   std::string kept() const override { return ""; }
   const std::vector<std::string>& about() const override { return about_; }
 

@@ -91,12 +91,12 @@ TEST(DentSurface, NormalsTurnWithTheSurfaceAsItBends) {
   Fixture f(support::icosphere(3, 0.04));
   const Vector3d middle = Vector3d::Constant(1.0 / 3);
   for (int i = 0; i < 100; ++i) f.press(0, middle, 0.004);
-  float most = 0;
+  float max = 0;
   for (const DentVertex& v : f.surface.vertices()) {
     EXPECT_TRUE(v.n.allFinite());
-    most = std::max(most, (v.n.normalized() - whole_normal(v).normalized()).norm());
+    max = std::max(max, (v.n.normalized() - whole_normal(v).normalized()).norm());
   }
-  EXPECT_GT(most, 0.05F);
+  EXPECT_GT(max, 0.05F);
 }
 
 TEST(DentSurface, IgnoresPatchWithInvalidIndices) {

@@ -69,9 +69,9 @@ TEST(FirstTouch, ChangesNoShade) {
     std::printf(
         "%s: at first touch the picture changes by up to %.0f of 255 (mean %.4f) with naive "
         "normals, %.0f (mean %.4f) with split ones\n",
-        shading == Shading::kPhong ? "Phong" : "Gouraud", naive.most, naive.mean, cured.most,
+        shading == Shading::kPhong ? "Phong" : "Gouraud", naive.max, naive.mean, cured.max,
         cured.mean);
-    EXPECT_GT(naive.most, 5);  // the jump that the patch must not show
+    EXPECT_GT(naive.max, 5);  // the jump that the patch must not show
     // The rest is rounding, and samples on the new edges.
     EXPECT_LE(cured.mean, 0.002);
     EXPECT_LE(cured.mean, naive.mean / 50);

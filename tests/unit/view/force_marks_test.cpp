@@ -25,22 +25,22 @@ TEST(TipTrail, KeepsLastSecondsAndStrongestForce) {
     const double t = 1e-3 * i;
     trail.add(tick_at(t, 0.01 * t, i == 9'555 ? 3.0 : 0.5));  // 10 mm/s, one strong force
   }
-  trail.give(points);
+  trail.copy_to(points);
   ASSERT_GT(points.size(), 50U);
   EXPECT_LE(points.size(), 401U);
   EXPECT_NEAR(points.front().p_WT.x(), 0.06, 5e-4);
   EXPECT_NEAR(points.back().p_WT.x(), 0.1, 5e-4);
-  double most = 0;
-  for (const TrailPoint& point : points) most = std::max(most, point.force);
-  EXPECT_EQ(most, 3);
+  double max = 0;
+  for (const TrailPoint& point : points) max = std::max(max, point.force);
+  EXPECT_EQ(max, 3);
   // A resting tip and invalid ticks add nothing; another run clears the trail.
   const std::size_t before = points.size();
   trail.add(tick_at(10.001, 0.1, 0.5));
   trail.add(tick_at(10.002, NAN, 0.5));
-  trail.give(points);
+  trail.copy_to(points);
   EXPECT_EQ(points.size(), before);
   trail.add(tick_at(0, 0, 1));
-  trail.give(points);
+  trail.copy_to(points);
   EXPECT_EQ(points.size(), 1U);
 }
 
@@ -67,13 +67,13 @@ TEST(ForceMarks, PointAlongTheFieldAndSkipWeakPlaces) {
   EXPECT_EQ(mesh.vertices.size(), 2 * one.vertices.size());
   // The middle of the first arrow is at its sample, and it is no longer than the distance of the
   // samples.
-  float least = 0, most = 0;
+  float min = 0, max = 0;
   for (std::size_t i = 0; i < one.vertices.size(); ++i) {
-    least = std::min(least, mesh.vertices[i].p.z());
-    most = std::max(most, mesh.vertices[i].p.z());
+    min = std::min(min, mesh.vertices[i].p.z());
+    max = std::max(max, mesh.vertices[i].p.z());
   }
-  EXPECT_NEAR(least, -0.0045, 1e-6);
-  EXPECT_NEAR(most, 0.0045, 1e-6);
+  EXPECT_NEAR(min, -0.0045, 1e-6);
+  EXPECT_NEAR(max, 0.0045, 1e-6);
   for (const ColouredVertex& vertex : mesh.vertices) EXPECT_NEAR(vertex.n.norm(), 1, 1e-5);
 }
 

@@ -45,11 +45,11 @@ TEST(MomentRing, ShowsTheNewestMomentThatIsNoLater) {
     EXPECT_EQ(shown->patch.points[0].vertex, 7);
     EXPECT_EQ(shown->patch.source[0], 5);
   }
-  EXPECT_NEAR(ring.beside(2.51, 0), 2.5, 1e-9);
-  EXPECT_NEAR(ring.beside(2.51, 2), 2.6, 1e-9);
-  EXPECT_NEAR(ring.beside(2.51, -3), 2.35, 1e-9);
-  EXPECT_EQ(ring.beside(2.51, -1000), ring.oldest());
-  EXPECT_EQ(ring.beside(2.51, 1000), ring.newest());
+  EXPECT_NEAR(ring.time_of_step(2.51, 0), 2.5, 1e-9);
+  EXPECT_NEAR(ring.time_of_step(2.51, 2), 2.6, 1e-9);
+  EXPECT_NEAR(ring.time_of_step(2.51, -3), 2.35, 1e-9);
+  EXPECT_EQ(ring.time_of_step(2.51, -1000), ring.oldest());
+  EXPECT_EQ(ring.time_of_step(2.51, 1000), ring.newest());
   ring.show(-10, *shown);
   EXPECT_EQ(shown->tick.p_WT[0], 0);
 }
@@ -102,10 +102,10 @@ TEST(MomentRing, KeepsFewerSecondsOfLargeMoments) {
   std::size_t alive = 0;
   for (const auto& mesh : meshes) alive += mesh.expired() ? 0 : 1;
   const std::size_t bytes = alive * 40'000 * sizeof(Eigen::Vector3d);
-  EXPECT_LE(bytes, MomentRing::kBytesMost);
-  EXPECT_LE(ring.bytes(), MomentRing::kBytesMost);
+  EXPECT_LE(bytes, MomentRing::kBytesMax);
+  EXPECT_LE(ring.bytes(), MomentRing::kBytesMax);
   EXPECT_GE(ring.bytes(), bytes);
-  EXPECT_GT(bytes, MomentRing::kBytesMost / 2);
+  EXPECT_GT(bytes, MomentRing::kBytesMax / 2);
   EXPECT_LT(ring.newest() - ring.oldest(), MomentRing::kSeconds);
   ring.clear();
   EXPECT_EQ(ring.bytes(), 0U);

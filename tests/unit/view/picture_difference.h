@@ -13,7 +13,7 @@ namespace thimble::support {
 /// Difference of two pictures of the same size, in steps of 1/255.
 struct PictureDifference {
   double mean = 0;  ///< Of all bytes.
-  double most = 0;  ///< Of any byte.
+  double max = 0;   ///< Of any byte.
   double bad_blocks =
       0;  ///< Share of blocks of 8 x 8 pixels whose mean brightness differs by > 10.
 };
@@ -24,7 +24,7 @@ inline PictureDifference difference(const view::Picture& a, const view::Picture&
   for (std::size_t i = 0; i < a.rgb.size(); ++i) {
     const double one = std::abs(a.rgb[i] - b.rgb[i]);
     result.mean += one / static_cast<double>(a.rgb.size());
-    result.most = std::max(result.most, one);
+    result.max = std::max(result.max, one);
   }
   constexpr int kBlock = 8;
   int blocks = 0;

@@ -29,7 +29,7 @@ TEST(PlayHead, RecordingPlaysAtSetSpeedAndStopsAtTheEnd) {
 TEST(PlayHead, PositionIsClampedToTheSpan) {
   PlayHead head = PlayHead::of_recording();
   head.set_span(0, 2);
-  head.stand_at(1.25);
+  head.stop_at(1.25);
   head.step(10);
   EXPECT_EQ(head.time(), 1.25);
   head.go(-4);

@@ -39,11 +39,11 @@ TEST(Plots, FindMinAndMaxOfAnyRange) {
     const int other = place(random);
     const int from = std::min(one, other);
     const int to = i % 2 == 0 ? std::max(one, other) : std::min(from + i, kTicks - 1);
-    const auto [least, most] = std::minmax_element(forces.begin() + from, forces.begin() + to + 1);
+    const auto [min, max] = std::minmax_element(forces.begin() + from, forces.begin() + to + 1);
     const Plots::Extent found =
         plots.extent(Channel::kForce, {1e-3 * from - 1e-7, 1e-3 * to + 1e-7});
-    EXPECT_FLOAT_EQ(found.least, static_cast<float>(*least));
-    EXPECT_FLOAT_EQ(found.most, static_cast<float>(*most));
+    EXPECT_FLOAT_EQ(found.min, static_cast<float>(*min));
+    EXPECT_FLOAT_EQ(found.max, static_cast<float>(*max));
   }
 }
 

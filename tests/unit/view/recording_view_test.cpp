@@ -118,11 +118,11 @@ void expect_as_seen(const std::string& scene, const std::vector<double>& times,
     for (std::size_t arm = 0; arm < then.others.size(); ++arm) {
       // At a tick of the first arm, the previous ticks of the other arms are shown, because theirs
       // are later.
-      const driver::TickRecord& told = then.others[arm].tick;
-      ASSERT_EQ(told.tick + 1, then.tick.tick);
+      const driver::TickRecord& of_other = then.others[arm].tick;
+      ASSERT_EQ(of_other.tick + 1, then.tick.tick);
       EXPECT_EQ(now->others[arm].tick.tick, then.tick.tick);
-      EXPECT_EQ(seen.recorded->ticks(arm + 1)[told.tick].p_WT, told.p_WT);
-      EXPECT_EQ(seen.recorded->ticks(arm + 1)[told.tick].f_sent_W, told.f_sent_W);
+      EXPECT_EQ(seen.recorded->ticks(arm + 1)[of_other.tick].p_WT, of_other.p_WT);
+      EXPECT_EQ(seen.recorded->ticks(arm + 1)[of_other.tick].f_sent_W, of_other.f_sent_W);
     }
   }
 }
@@ -158,13 +158,13 @@ TEST(RecordingView, ShowsPermanentShapes) {
   ASSERT_NE(seen.recorded, nullptr);
   const auto now = std::make_unique<DrawnMoment>();
   const auto moved = [&](const DrawnMoment& moment) {
-    double most = 0;  // m, of all vertices
-    if (!moment.shapes.at(0)) return most;
+    double max = 0;  // m, of all vertices
+    if (!moment.shapes.at(0)) return max;
     const auto& first = seen.recorded->scene().objects[0].mesh.vertices;
     for (std::size_t i = 0; i < first.size(); ++i) {
-      most = std::max(most, (moment.shapes[0]->vertices[i] - first[i]).norm());
+      max = std::max(max, (moment.shapes[0]->vertices[i] - first[i]).norm());
     }
-    return most;
+    return max;
   };
   ASSERT_GT(moved(seen.moments[1]), 1e-3);
   seen.recorded->show(0.1, *now);
@@ -212,12 +212,12 @@ TEST(RecordingView, StepsFromTickToTick) {
   for (std::uint64_t i = 0; i < 50; ++i) {
     recorded.show(time, *now);
     EXPECT_EQ(now->tick.tick, i);
-    time = recorded.beside(time, 1);
+    time = recorded.time_of_step(time, 1);
   }
-  recorded.show(recorded.beside(time, -1), *now);
+  recorded.show(recorded.time_of_step(time, -1), *now);
   EXPECT_EQ(now->tick.tick, 49U);
-  EXPECT_EQ(recorded.beside(time, -1000), recorded.time().begin);
-  EXPECT_EQ(recorded.beside(time, 100'000), recorded.time().end);
+  EXPECT_EQ(recorded.time_of_step(time, -1000), recorded.time().begin);
+  EXPECT_EQ(recorded.time_of_step(time, 100'000), recorded.time().end);
 }
 
 TEST(RecordingView, ErrorNamesWrongFile) {

@@ -41,9 +41,9 @@ TEST(SceneMenu, ListsShippedUserAndNeighbouringScenes) {
   ASSERT_EQ(found.own.size(), 1u);
   EXPECT_TRUE(lists(found.own, own));
   EXPECT_EQ(found.own[0].about, "Mine.");
-  ASSERT_EQ(found.beside.size(), 1u) << "arm files and hidden files are not scenes";
-  EXPECT_EQ(found.beside[0].name, "beside");
-  EXPECT_TRUE(find_scenes(shipped).beside.empty()) << "shipped scenes are listed separately";
+  ASSERT_EQ(found.neighbours.size(), 1u) << "arm files and hidden files are not scenes";
+  EXPECT_EQ(found.neighbours[0].name, "beside");
+  EXPECT_TRUE(find_scenes(shipped).neighbours.empty()) << "shipped scenes are listed separately";
   unsetenv("XDG_DATA_HOME");
 }
 
@@ -78,16 +78,16 @@ TEST(RunButtons, AreDrawnForAnyRunAndExplainWhyPhysicalArmRefuses) {
     buttons.draw(*reader);
     ImGui::End();
     ImGui::EndFrame();
-    EXPECT_EQ(buttons.take_told(), "");
+    EXPECT_EQ(buttons.take_message(), "");
     const bool real = std::string(device) != "sim";
     buttons.take_key('B', false, false, *reader);
-    EXPECT_EQ(buttons.take_told().find("physical arm (polhem_1)") != std::string::npos, real);
-    EXPECT_EQ(run->restart_order_after(0).has_value(), !real);
+    EXPECT_EQ(buttons.take_message().find("physical arm (polhem_1)") != std::string::npos, real);
+    EXPECT_EQ(run->restart_request_after(0).has_value(), !real);
     buttons.take_key(',', false, false, *reader);
     EXPECT_EQ(run->speed_wanted(), real ? std::nullopt : std::optional(1 / 1.25));
     buttons.take_key('L', false, false, *reader);
     EXPECT_EQ(run->loop_asked(), !real);
-    static_cast<void>(buttons.take_told());
+    static_cast<void>(buttons.take_message());
     run->set_state(session::RunState::kPaused);
     buttons.take_key('N', false, true, *reader);
     EXPECT_EQ(run->steps_asked(), real ? 0u : 100u);

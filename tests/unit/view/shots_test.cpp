@@ -24,11 +24,11 @@ using support::PictureDifference;
 
 // The stored pictures have 256 colours, and other releases of Mesa round differently. A visible
 // change is much larger (see the controls below).
-constexpr double kMeanMost = 2.5;         // of 255
-constexpr double kBadBlocksMost = 0.004;  // 4 of 1200 blocks
+constexpr double kMeanMax = 2.5;         // of 255
+constexpr double kBadBlocksMax = 0.004;  // 4 of 1200 blocks
 
 bool alike(const PictureDifference& difference) {
-  return difference.mean <= kMeanMost && difference.bad_blocks <= kBadBlocksMost;
+  return difference.mean <= kMeanMax && difference.bad_blocks <= kBadBlocksMax;
 }
 
 ShotChoice small_choice() {

@@ -121,9 +121,9 @@ TEST_F(TouchPlayerTest, StopsTheGamepadWhenTheRunStallsPausesOrEnds) {
   EXPECT_NE(felt_.back(), RumbleLevel{}) << "the last update is less than 0.2 s old";
   look(20);
   EXPECT_EQ(felt_.back(), RumbleLevel{});
-  const std::size_t told = felt_.size();
+  const std::size_t sent_before = felt_.size();
   look(500);
-  EXPECT_EQ(felt_.size(), told) << "updated once";
+  EXPECT_EQ(felt_.size(), sent_before) << "updated once";
   for (const session::RunState state : {session::RunState::kPaused, session::RunState::kEnded}) {
     run_->set_state(session::RunState::kRunning);
     go_on(60, 2);

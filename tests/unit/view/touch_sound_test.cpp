@@ -52,11 +52,11 @@ double loudness(const std::vector<float>& sound, double hertz) {
 }
 
 double loudest(const std::vector<float>& sound, std::size_t from = 0) {
-  double most = 0;
+  double max = 0;
   for (std::size_t i = from; i < sound.size(); ++i) {
-    most = std::max(most, std::abs(static_cast<double>(sound[i])));
+    max = std::max(max, std::abs(static_cast<double>(sound[i])));
   }
-  return most;
+  return max;
 }
 
 TEST(TouchSound, GivesTheFrequencyOfATexture) {

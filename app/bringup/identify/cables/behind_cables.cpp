@@ -22,19 +22,19 @@ constexpr double kCableDamping = 0.05;    // of a cable's damping, which dry fri
 constexpr double kCableLines = 2;         // times the lines' noise
 // Remaining share of these errors if motors and cables are simulated to the encoders' steps and the
 // motors have no friction, which hides some of them [chosen: identify_cables_test,
-// identify_play_test].
-constexpr double kOfUnderstood = 0.4;
+// identify_backlash_test].
+constexpr double kShareIfSimulated = 0.4;
 // Lines fit to 1 to 1.5; the rest is due to nonlinear geometry and friction.
-constexpr double kLinesMisfitMost = 10;
+constexpr double kLinesMisfitMax = 10;
 // Max. half-width of an interval over the value, of a cable, and of a motor's inertia. If the
 // latter is small compared with its link's, little is known of it, and it matters little.
-constexpr double kCableUnknownMost = 0.6;
-constexpr double kMotorUnknownMost = 1;
+constexpr double kCableUnknownMax = 0.6;
+constexpr double kMotorUnknownMax = 1;
 
 }  // namespace
 
 driver::Result<ArmMotion> behind_cables(const ArmMotion& motion, const scene::ArmFile& file,
-                                        CableFit& lines, bool refine, PerMass& fit) {
+                                        CableFit& lines, bool refine, MassNormalisedFit& fit) {
   constexpr int kRounds = 2;
   // Errors of the method in addition to the statistics [chosen like those above]: times a
   // deviation, and of the link's inertia.
@@ -47,17 +47,17 @@ driver::Result<ArmMotion> behind_cables(const ArmMotion& motion, const scene::Ar
     auto seen = fit_motion(*links, false, !last);
     if (!seen) return seen.error();
     fit = *seen;
-    fit.delay.value += lines.elastic.theta[TwoMass::kDelay] - kHeldBack * motion.dt;
+    fit.delay.value += lines.elastic.theta[TwoMass::kDelay] - kDelayTicks * motion.dt;
     if (last) return links;
     SlowPart slow;
-    slow.gain = fit.theta.segment<3>(PerMass::kGain);
+    slow.gain = fit.theta.segment<3>(MassNormalisedFit::kGain);
     for (int i = 0; i < 3; ++i) {
       const int g = TwoMass::kGain + i, J = TwoMass::kInertia + i;
       slow.ratio[i] = std::max(0.0, lines.elastic.theta[J] / lines.elastic.theta[g] +
-                                        fit.theta[PerMass::kInertia + i] / slow.gain[i]);
+                                        fit.theta[MassNormalisedFit::kInertia + i] / slow.gain[i]);
       slow.gain_error[i] = kTrust * std::sqrt(fit.covariance(i, i));
-      const double error =
-          kTrust * std::sqrt(fit.covariance(PerMass::kInertia + i, PerMass::kInertia + i));
+      const double error = kTrust * std::sqrt(fit.covariance(MassNormalisedFit::kInertia + i,
+                                                             MassNormalisedFit::kInertia + i));
       slow.ratio_error[i] = math::hypot(error, kShareError * spectrum.JTJ(i, i)) / slow.gain[i];
     }
     slow.delay = fit.delay.value;
@@ -68,8 +68,8 @@ driver::Result<ArmMotion> behind_cables(const ArmMotion& motion, const scene::Ar
 
 void put_cables(Identified& found) {
   ArmConstants& constants = found.constants;
-  const bool clear = found.play.understood() && !found.play.friction.seen;
-  const double share = clear ? kOfUnderstood : 1;
+  const bool clear = found.play.fits_to_steps() && !found.play.friction.seen;
+  const double share = clear ? kShareIfSimulated : 1;
   const double mass = share * kCableMass * constants.mass.value;
   const double friction = share * constants.coulomb.value;
   widen(constants.mass, mass);
@@ -95,7 +95,7 @@ void put_cables(Identified& found) {
     if (rotors.shows_viscous[i]) cable.viscous = by_gain(rotors.viscous[i], constants.gain[i]);
     if (rotors.shows_coulomb[i]) cable.coulomb = by_gain(rotors.coulomb[i], constants.gain[i]);
   }
-  if (found.lines.elastic.misfit > kLinesMisfitMost) {
+  if (found.lines.elastic.misfit > kLinesMisfitMax) {
     found.against.push_back(
         fmt::format("Above {:g} Hz the motion fits neither a rigid arm nor an arm with a mass "
                     "behind each cable (chi^2 {:.0f} per degree of freedom). Possible causes: "
@@ -114,8 +114,8 @@ void put_cables(Identified& found) {
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const CableConstants& cable = (*constants.cables)[i];
-    if (cable.inertia.plus_minus < kMotorUnknownMost * cable.inertia.value &&
-        cable.stiffness.plus_minus < kCableUnknownMost * cable.stiffness.value) {
+    if (cable.inertia.plus_minus < kMotorUnknownMax * cable.inertia.value &&
+        cable.stiffness.plus_minus < kCableUnknownMax * cable.stiffness.value) {
       continue;
     }
     found.against.push_back(
@@ -127,16 +127,16 @@ void put_cables(Identified& found) {
   }
 }
 
-PerMass with_method(const PerMass& fit) {
-  PerMass wider = fit;
+MassNormalisedFit with_method(const MassNormalisedFit& fit) {
+  MassNormalisedFit wider = fit;
   const auto add = [&wider](int k, double error) { wider.covariance(k, k) += error * error; };
-  const double coulomb = fit.theta[PerMass::kCoulomb];
+  const double coulomb = fit.theta[MassNormalisedFit::kCoulomb];
   for (int i = 0; i < 3; ++i) {
-    add(PerMass::kGain + i, kCableGain * fit.theta[PerMass::kGain + i]);
-    add(PerMass::kWeight + i, kCableFriction * coulomb);
+    add(MassNormalisedFit::kGain + i, kCableGain * fit.theta[MassNormalisedFit::kGain + i]);
+    add(MassNormalisedFit::kWeight + i, kCableFriction * coulomb);
   }
-  add(PerMass::kViscous, kCableViscous * coulomb);
-  add(PerMass::kCoulomb, kCableFriction * coulomb);
+  add(MassNormalisedFit::kViscous, kCableViscous * coulomb);
+  add(MassNormalisedFit::kCoulomb, kCableFriction * coulomb);
   return wider;
 }
 

@@ -96,7 +96,7 @@ JointOfLink behind_cable(const ArmMotion& motion, const CableFit& cables, int jo
   Wave faster(count);
   const double gain = fit.theta[TwoMass::kGain + joint];
   const double inertia = fit.theta[TwoMass::kInertia + joint];
-  const double give = fit.theta[TwoMass::kCompliance + joint];
+  const double compliance = fit.theta[TwoMass::kCompliance + joint];
   const double fade = fit.theta[TwoMass::kFade + joint];
   const double viscous = cables.rotor_viscous[joint], coulomb = cables.rotor_coulomb[joint];
   Wave rubs;
@@ -109,7 +109,7 @@ JointOfLink behind_cable(const ArmMotion& motion, const CableFit& cables, int jo
     if (!rubs.empty()) pull -= rubs[i];
     const double share = kept(hertz(i, count, motion.dt));
     faster[i] = share * s * s * turned.wave[i] * turn_by(0.5 * s.imag() * motion.dt);
-    turned.wave[i] = share * (turned.wave[i] - give / (1.0 + fade * s) * pull *
+    turned.wave[i] = share * (turned.wave[i] - compliance / (1.0 + fade * s) * pull *
                                                    turn_by(-0.5 * s.imag() * motion.dt));
     pushed.wave[i] = share * pull / gain;
   }
@@ -117,7 +117,7 @@ JointOfLink behind_cable(const ArmMotion& motion, const CableFit& cables, int jo
   for (std::size_t i = 0; i < count; ++i) {
     // The lines that were removed bend nothing: a constant torque stretches the cable.
     link.tau[i] += pushed.at(i);
-    link.q[i] += turned.at(i) - give * gain * pushed.at(i);
+    link.q[i] += turned.at(i) - compliance * gain * pushed.at(i);
   }
   return link;
 }
@@ -178,8 +178,8 @@ driver::Result<ArmMotion> motion_of_links(const ArmMotion& motion, const CableFi
     for (int joint = 0; joint < 3; ++joint) {
       const JointOfLink& link = links[static_cast<std::size_t>(joint)];
       sample.q[joint] = link.q[i];
-      sample.tau[joint] = link.tau[i + kHeldBack];
-      sample.ddq[joint] = link.ddq[i + kHeldBack];
+      sample.tau[joint] = link.tau[i + kDelayTicks];
+      sample.ddq[joint] = link.ddq[i + kDelayTicks];
     }
     std::visit([&](const auto& build) { build.forward(sample.q, sample.p_BT, J); },
                file.model.geometry);

@@ -15,10 +15,10 @@ std::array<CableConstants, 3> cable_constants(const CableFit& fit,
                                               const std::array<Estimate, 3>& gain);
 
 /// Returns the motion of the links behind elastic cables, as if each link had a motor with the
-/// cable's torque. Torques are kHeldBack ticks late, nothing is above 60 Hz, and half a second is
+/// cable's torque. Torques are kDelayTicks ticks late, nothing is above 60 Hz, and half a second is
 /// missing at either end. A fit to it gives a rigid arm's mass, friction and weight. The error
 /// states that the links would have been out of reach.
-inline constexpr int kHeldBack = 3;
+inline constexpr int kDelayTicks = 3;
 driver::Result<ArmMotion> motion_of_links(const ArmMotion& motion, const CableFit& fit,
                                           const scene::ArmFile& file);
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-constexpr int kRoundsMost = 100;
+constexpr int kRoundsMax = 100;
 constexpr double kFitsWell = 3;  // chi^2 per degree of freedom
 
 // Returns the frequency of a mass on a spring, Hz. `compliance`: of the spring, m/N.
@@ -23,17 +23,17 @@ double resonance_of(double compliance, double inverse_mass) {
 
 /// Searches near a bad fit for a better one, with single cables several times softer or stiffer:
 /// starts with all joints alike lie in other local minima.
-void look_about(const TwoMassSearch& search, double enough, TwoMassTheta& x, double& least) {
+void look_about(const TwoMassSearch& search, double enough, TwoMassTheta& x, double& lowest_sum) {
   constexpr int kSweeps = 2, kSomeRounds = 30;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (int joint = 0; joint < 3; ++joint) {
       for (const double softer : {0.1, 0.3, 3.0, 10.0}) {
-        if (least < enough) return;
+        if (lowest_sum < enough) return;
         TwoMassTheta other = x;
         other[TwoMass::kCompliance + joint] += math::log(softer);
         other[TwoMass::kFade + joint] = math::log(1e-3);
-        const double sum = search.go(other, true, kSomeRounds);
-        if (sum < least) least = sum, x = other;
+        const double sum = search.minimise(other, true, kSomeRounds);
+        if (sum < lowest_sum) lowest_sum = sum, x = other;
       }
     }
   }
@@ -42,7 +42,7 @@ void look_about(const TwoMassSearch& search, double enough, TwoMassTheta& x, dou
 /// Searches for cables from many starts, for each of several delays, because lines have many local
 /// minima. If a rigid arm already fits, few starts suffice.
 TwoMassTheta first_guess(const TwoMassSearch& search, const LineSpectrum& spectrum,
-                         const TwoMassTheta& rigid, const PerMass& slow, double stiff) {
+                         const TwoMassTheta& rigid, const MassNormalisedFit& slow, double stiff) {
   constexpr double kSoftest = 8, kStiffest = 400;  // Hz
   constexpr double kRotor = 0.3;                   // of the link's inertia
   constexpr int kFirstRounds = 5;
@@ -68,24 +68,24 @@ TwoMassTheta first_guess(const TwoMassSearch& search, const LineSpectrum& spectr
         x[TwoMass::kFade + joint] = 0.1 / omega;
       }
       x = into_search(x);
-      const double sum = search.go(x, true, kFirstRounds);
+      const double sum = search.minimise(x, true, kFirstRounds);
       starts.push_back({sum, x});
     }
   }
   std::sort(starts.begin(), starts.end(),
             [](const Start& a, const Start& b) { return a.sum < b.sum; });
   starts.resize(std::min<std::size_t>(starts.size(), 3));
-  for (Start& start : starts) start.sum = search.go(start.x, true, kRoundsMost);
+  for (Start& start : starts) start.sum = search.minimise(start.x, true, kRoundsMax);
   return std::min_element(starts.begin(), starts.end(),
                           [](const Start& a, const Start& b) { return a.sum < b.sum; })
       ->x;
 }
 
 void put_elastic(CableFit& found, const TwoMassSearch& search, const TwoMassTheta& x,
-                 double least) {
+                 double lowest_sum) {
   TwoMass& elastic = found.elastic;
   elastic.theta = from_search(x);
-  elastic.misfit = least / static_cast<double>(search.rows() - TwoMass::kCount);
+  elastic.misfit = lowest_sum / static_cast<double>(search.rows() - TwoMass::kCount);
   elastic.covariance = std::max(1.0, elastic.misfit) * search.covariance(x, true);
   // The logarithms' deviations are relative.
   for (int k = 0; k < TwoMass::kCount; ++k) {
@@ -116,57 +116,57 @@ void refine_cables(CableFit& found, const LineSpectrum& spectrum, const SlowPart
   start[TwoMass::kDelay] = slow.delay;
   // From the result of the lines without the slow part, and from the slow part.
   TwoMassTheta elastic = into_search(found.elastic.theta), other = into_search(start);
-  double least = search.go(elastic, true, kRoundsMost);
-  const double sum = search.go(other, true, kRoundsMost);
-  if (sum < least) least = sum, elastic = other;
-  put_elastic(found, search, elastic, least);
+  double lowest_sum = search.minimise(elastic, true, kRoundsMax);
+  const double sum = search.minimise(other, true, kRoundsMax);
+  if (sum < lowest_sum) lowest_sum = sum, elastic = other;
+  put_elastic(found, search, elastic, lowest_sum);
 }
 
-CableFit fit_cables(const LineSpectrum& spectrum, const PerMass& slow, double dt) {
+CableFit fit_cables(const LineSpectrum& spectrum, const MassNormalisedFit& slow, double dt) {
   CableFit found;
   found.JTJ = spectrum.JTJ;
   TwoMassSearch search(spectrum, dt);
   TwoMassTheta rigid = TwoMassTheta::Zero();
   rigid.head<3>() = slow.theta.head<3>();
-  rigid[TwoMass::kViscous] = std::max(0.0, slow.theta[PerMass::kViscous]);
+  rigid[TwoMass::kViscous] = std::max(0.0, slow.theta[MassNormalisedFit::kViscous]);
   rigid[TwoMass::kDelay] = slow.delay.value;
   search.measure_noise(rigid, false);
   rigid = into_search(rigid);
-  double stiff = search.go(rigid, false, kRoundsMost), least = HUGE_VAL;
+  double stiff = search.minimise(rigid, false, kRoundsMax), lowest_sum = HUGE_VAL;
   TwoMassTheta elastic = first_guess(search, spectrum, from_search(rigid), slow, stiff);
   // The noise is the residual of the better fit between the lines.
   for (int round = 0; round < 2; ++round) {
-    stiff = search.go(rigid, false, kRoundsMost);
-    least = search.go(elastic, true, kRoundsMost);
+    stiff = search.minimise(rigid, false, kRoundsMax);
+    lowest_sum = search.minimise(elastic, true, kRoundsMax);
     if (round == 0) {
-      search.measure_noise(from_search(least < stiff ? elastic : rigid), least < stiff);
+      search.measure_noise(from_search(lowest_sum < stiff ? elastic : rigid), lowest_sum < stiff);
     }
   }
   const auto count = static_cast<double>(search.rows());
-  if (least < stiff && least > kFitsWell * count) {
-    look_about(search, kFitsWell * count, elastic, least);
+  if (lowest_sum < stiff && lowest_sum > kFitsWell * count) {
+    look_about(search, kFitsWell * count, elastic, lowest_sum);
     search.measure_noise(from_search(elastic), true);
-    stiff = search.go(rigid, false, kRoundsMost);
-    least = search.go(elastic, true, kRoundsMost);
+    stiff = search.minimise(rigid, false, kRoundsMax);
+    lowest_sum = search.minimise(elastic, true, kRoundsMax);
   }
-  found.better = count * math::log(stiff / least) - 6 * math::log(count);
+  found.better = count * math::log(stiff / lowest_sum) - 6 * math::log(count);
   found.rigid.theta = from_search(rigid);
   found.rigid.theta.tail<6>().setZero();
   found.rigid.misfit = stiff / static_cast<double>(search.rows() - TwoMass::kRigidCount);
-  put_elastic(found, search, elastic, least);
+  put_elastic(found, search, elastic, lowest_sum);
   constexpr double kBetter = 20;
   double lowest = HUGE_VAL;  // Hz, oscillation of a link on its cable
   for (int i = 0; i < 3; ++i) {
-    const double give = std::max(0.0, found.elastic.theta[TwoMass::kCompliance + i]);
-    lowest = std::min(lowest, resonance_of(give, 1 / spectrum.JTJ(i, i)));
+    const double compliance = std::max(0.0, found.elastic.theta[TwoMass::kCompliance + i]);
+    lowest = std::min(lowest, resonance_of(compliance, 1 / spectrum.JTJ(i, i)));
   }
   // Above all lines the cause is not a cable but the lag of an amplifier.
   found.stretches = found.better > kBetter && lowest < LineForces::kHighest;
-  Eigen::Vector3d give, error;
-  search.look_for_give(found.rigid.theta, give, error);
+  Eigen::Vector3d compliance, error;
+  search.estimate_compliance(found.rigid.theta, compliance, error);
   for (int i = 0; i < 3; ++i) {
-    const double most = std::max(0.0, give[i]) + kNormal95 * error[i];
-    found.unseen_from[i] = resonance_of(most, 1 / spectrum.JTJ(i, i));
+    const double max_compliance = std::max(0.0, compliance[i]) + kNormal95 * error[i];
+    found.unseen_from[i] = resonance_of(max_compliance, 1 / spectrum.JTJ(i, i));
   }
   found.noise = search.sigma();
   return found;

@@ -49,8 +49,8 @@ struct CableFit {
   /// If nothing was seen: cables would have been seen whose links oscillate below this frequency,
   /// Hz for each joint.
   Eigen::Vector3d unseen_from{0, 0, 0};
-  /// Friction of the motors' side per moved mass, if the motors' motion showed some (PlayFit).
-  /// Lines show only a viscous part of it, which differs from line to line.
+  /// Friction of the motors' side per moved mass, if the motors' motion showed some
+  /// (BacklashResult). Lines show only a viscous part of it, which differs from line to line.
   Eigen::Vector3d rotor_viscous{0, 0, 0}, rotor_coulomb{0, 0, 0};
   Eigen::Matrix3d JTJ = Eigen::Matrix3d::Zero();  ///< Mean over the motion, m^2.
   std::vector<Eigen::Vector3d> noise;             ///< RMS between the lines, rad for each joint.
@@ -70,6 +70,6 @@ void refine_cables(CableFit& found, const LineSpectrum& spectrum, const SlowPart
 
 /// Fits both models to the lines of a motion, starting from its slow part, and selects one by the
 /// Bayesian information criterion. Real-time: never from the servo thread.
-CableFit fit_cables(const LineSpectrum& spectrum, const PerMass& slow, double dt);
+CableFit fit_cables(const LineSpectrum& spectrum, const MassNormalisedFit& slow, double dt);
 
 }  // namespace thimble::bringup

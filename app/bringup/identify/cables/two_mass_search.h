@@ -17,7 +17,7 @@ using TwoMassTheta = Eigen::Matrix<double, TwoMass::kCount, 1>;
 
 inline constexpr int kSlowRows = 7;  // of a SlowPart
 
-inline constexpr double kNoiseLeast = 1e-12;  // rad, below any encoder's
+inline constexpr double kNoiseMin = 1e-12;  // rad, below any encoder's
 
 /// Returns whether the search uses the logarithm of a constant.
 inline bool is_log(int k) {
@@ -50,11 +50,11 @@ inline Eigen::Vector3cd two_mass_answer(const TwoMassTheta& theta, const Spectra
       math::sin(half) / half * turn_by(-line.omega * (0.5 * dt + theta[TwoMass::kDelay]));
   Eigen::Matrix3cd Z = JTJ.cast<std::complex<double>>() * (s * s + theta[TwoMass::kViscous] * s);
   if (elastic) {
-    Eigen::Matrix3cd give = Z.inverse();
+    Eigen::Matrix3cd compliance = Z.inverse();
     for (int i = 0; i < 3; ++i) {
-      give(i, i) += theta[TwoMass::kCompliance + i] / (1.0 + s * theta[TwoMass::kFade + i]);
+      compliance(i, i) += theta[TwoMass::kCompliance + i] / (1.0 + s * theta[TwoMass::kFade + i]);
     }
-    Z = give.inverse();
+    Z = compliance.inverse();
   }
   for (int i = 0; i < 3; ++i) {
     Z(i, i) += s * s * theta[TwoMass::kInertia + i] + s * theta[TwoMass::kRotorViscous + i];
@@ -74,13 +74,13 @@ class TwoMassSearch {
   /// Estimates the noise from the frequencies between the lines, without the model's response to
   /// their torques.
   void measure_noise(const TwoMassTheta& theta, bool elastic) {
-    constexpr std::size_t kBeside = LineSpectrum::kBeside;
+    constexpr std::size_t kNoiseLines = LineSpectrum::kNoiseLines;
     std::vector<Eigen::Vector3d> power(sigma_.size(), Eigen::Vector3d::Zero());
-    for (std::size_t i = 0; i < spectrum_.beside.size(); ++i) {
-      const SpectralLine& line = spectrum_.beside[i];
+    for (std::size_t i = 0; i < spectrum_.noise_lines.size(); ++i) {
+      const SpectralLine& line = spectrum_.noise_lines[i];
       const Eigen::Vector3cd rest =
           line.q - two_mass_answer(theta, line, spectrum_.JTJ, dt_, elastic);
-      power[i / kBeside] += rest.cwiseAbs2() / static_cast<double>(kBeside);
+      power[i / kNoiseLines] += rest.cwiseAbs2() / static_cast<double>(kNoiseLines);
     }
     for (std::size_t i = 0; i < sigma_.size(); ++i) {
       // Averaged with the neighbours: eight frequencies give it only to a third.
@@ -88,12 +88,12 @@ class TwoMassSearch {
       Eigen::Vector3d sum(0, 0, 0);
       for (std::size_t k = low; k <= high; ++k)
         sum += power[k] / static_cast<double>(high - low + 1);
-      sigma_[i] = sum.cwiseSqrt().cwiseMax(kNoiseLeast);
+      sigma_[i] = sum.cwiseSqrt().cwiseMax(kNoiseMin);
     }
   }
 
   /// Searches for the constants from `x`. Returns chi^2.
-  double go(TwoMassTheta& x, bool elastic, int rounds) const {
+  double minimise(TwoMassTheta& x, bool elastic, int rounds) const {
     const int count = elastic ? TwoMass::kCount : TwoMass::kRigidCount;
     return math::levenberg_marquardt<Eigen::MatrixXd>(Problem{*this, elastic, count}, x,
                                                       {.rounds = rounds, .ridge = 1e-12});
@@ -103,16 +103,16 @@ class TwoMassSearch {
     const int count = elastic ? TwoMass::kCount : TwoMass::kRigidCount;
     Eigen::MatrixXd slope;
     Eigen::VectorXd rest;
-    slopes(x, elastic, count, slope, rest);
+    jacobian(x, elastic, count, slope, rest);
     return math::ScaledNormal<Eigen::MatrixXd>(slope.transpose() * slope, kRidge).covariance();
   }
 
   /// Estimates compliances about a rigid arm: their values and deviations.
-  void look_for_give(const TwoMassTheta& rigid, Eigen::Vector3d& give,
-                     Eigen::Vector3d& error) const {
+  void estimate_compliance(const TwoMassTheta& rigid, Eigen::Vector3d& compliance,
+                           Eigen::Vector3d& error) const {
     Eigen::MatrixXd slope, all(rows(), TwoMass::kRigidCount + 3);
     Eigen::VectorXd rest, other(rows());
-    slopes(into_search(rigid), false, TwoMass::kRigidCount, slope, rest);
+    jacobian(into_search(rigid), false, TwoMass::kRigidCount, slope, rest);
     all.leftCols(TwoMass::kRigidCount) = slope;
     for (int i = 0; i < 3; ++i) {
       TwoMassTheta soft = rigid;
@@ -128,7 +128,7 @@ class TwoMassSearch {
         std::max(1.0, rest.squaredNorm() / static_cast<double>(rows() - TwoMass::kRigidCount));
     for (int i = 0; i < 3; ++i) {
       const int k = TwoMass::kRigidCount + i;
-      give[i] = -step[k];
+      compliance[i] = -step[k];
       error[i] = std::sqrt(spread * inverse(k, k));
     }
   }
@@ -155,7 +155,7 @@ class TwoMassSearch {
                      Eigen::VectorXd& gradient) const {
       Eigen::MatrixXd slope;
       Eigen::VectorXd rest;
-      search.slopes(x, elastic, count, slope, rest);
+      search.jacobian(x, elastic, count, slope, rest);
       normal = slope.transpose() * slope;
       gradient = slope.transpose() * rest;
       return sum_of(x, rest);
@@ -210,8 +210,8 @@ class TwoMassSearch {
     return x.segment<3>(TwoMass::kGain).minCoeff() > 0 && std::isfinite(sum) ? sum : HUGE_VAL;
   }
 
-  void slopes(const TwoMassTheta& x, bool elastic, int count, Eigen::MatrixXd& slope,
-              Eigen::VectorXd& rest) const {
+  void jacobian(const TwoMassTheta& x, bool elastic, int count, Eigen::MatrixXd& slope,
+                Eigen::VectorXd& rest) const {
     rest.resize(rows());
     slope.resize(rows(), count);
     rest_at(x, elastic, rest);

@@ -19,7 +19,7 @@ struct Of {
 };
 
 // kg, min. mass at the tip in an arm file.
-constexpr double kTipLeast = 1e-3;
+constexpr double kTipMin = 1e-3;
 
 /// Moves a mass from the tip to the elbow's coupling.
 WrittenLinks links_with_coupling(const SeenLinks& seen, const driver::SerialArm& arm, double mass) {
@@ -54,19 +54,19 @@ driver::Result<void> check_written(const WrittenLinks& is) {
 
 driver::Result<WrittenLinks> written_links(const SeenLinks& seen, const driver::SerialArm& arm) {
   const auto at = [&](double mass) { return links_with_coupling(seen, arm, mass); };
-  double most = seen[0] - kTipLeast, least = 0;
+  double upper = seen[0] - kTipMin, lower = 0;
   if (check_written(at(0))) return at(0);
-  if (auto good = check_written(at(most)); !(most > 0) || !good) {
+  if (auto good = check_written(at(upper)); !(upper > 0) || !good) {
     return driver::Error{
         "No physical links fit this motion: the inertia would be negative in some pose. Check the "
         "arm for backlash and rubbing parts, and record for longer (--seconds)."};
   }
   // More coupling means more inertia everywhere.
   for (int round = 0; round < 60; ++round) {
-    const double middle = 0.5 * (least + most);
-    (check_written(at(middle)) ? most : least) = middle;
+    const double middle = 0.5 * (lower + upper);
+    (check_written(at(middle)) ? upper : lower) = middle;
   }
-  return at(most);
+  return at(upper);
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ class LinkSearch {
  private:
   LinkColumns solve(double delay) const {
     const Eigen::MatrixXd gains = table_.pushed(delay, 1);
-    return table_.least(table_.rows(gains, 1, true), gains.rowwise().sum());
+    return table_.least_squares(table_.rows(gains, 1, true), gains.rowwise().sum());
   }
 
   double residual_at(double delay, std::size_t stride = 1) const {
@@ -71,7 +71,7 @@ class LinkSearch {
                           all = table_.rows(gains, stride, true);
     const Eigen::VectorXd right = gains.rowwise().sum();
     // Motors with a wrong delay explain less: relative to all of their force.
-    return (right - all * table_.least(all, right)).squaredNorm() / right.squaredNorm();
+    return (right - all * table_.least_squares(all, right)).squaredNorm() / right.squaredNorm();
   }
 
   /// One fit with its covariance, including the delay's column.
@@ -89,7 +89,7 @@ class LinkSearch {
     const Eigen::VectorXd right = gains.rowwise().sum();
     Eigen::MatrixXd all = table_.rows(gains, 1, with_links);
     Raw raw;
-    raw.theta = table_.least(all, right);
+    raw.theta = table_.least_squares(all, right);
     const Eigen::VectorXd rest = right - all * raw.theta;
     const Eigen::Vector3d gain = gains_of(raw.theta);
     all.col(kDelayColumn) = (table_.pushed(early, 1) - table_.pushed(delay + kStep, 1)) * gain /
@@ -163,13 +163,13 @@ class LinkSearch {
     LinkFit found = scaled(with, delay);
     const double better = normed.dot(correlation.ldlt().solve(normed)) -
                           kLinkConstants * math::log(static_cast<double>(table_.count()));
-    const double change = change_most(found);
+    const double change = max_change(found);
     const Raw without = better > 0 ? Raw{} : raw_at(delay, false);
     if (better <= 0) found = scaled(without, delay);
     found.places = places_of(better > 0 ? with : without);
     found.better = better;
     found.links = better > 0;
-    found.change_most = change;
+    found.max_change = change;
     return found;
   }
 
@@ -208,14 +208,14 @@ class LinkSearch {
   }
 
   /// Max. difference between a mass and that of the same axis at the first pose, relative.
-  double change_most(const LinkFit& fit) const {
+  double max_change(const LinkFit& fit) const {
     const auto masses = [&](std::size_t n) {
       const auto& samples = table_.motions()[n].samples;
       return masses_at(arm_, samples[samples.size() / 2].q);
     };
     const MassTerms first = masses(0);
     const auto theta = fit.theta.head<6>();
-    double most = 0;
+    double max_change_found = 0;
     for (std::size_t n = 1; n < table_.motions().size(); ++n) {
       const MassTerms here = masses(n) - first;
       for (int axis = 0; axis < 3; ++axis) {
@@ -223,10 +223,11 @@ class LinkSearch {
         const double variance =
             here.row(axis) * fit.covariance.topLeftCorner<6, 6>() * here.row(axis).transpose();
         const double from = first.row(axis) * theta;
-        most = std::max(most, (std::abs(change) + kNormal95 * std::sqrt(variance)) / from);
+        max_change_found =
+            std::max(max_change_found, (std::abs(change) + kNormal95 * std::sqrt(variance)) / from);
       }
     }
-    return most;
+    return max_change_found;
   }
 
   driver::SerialArm arm_;

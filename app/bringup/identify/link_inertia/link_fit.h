@@ -43,10 +43,10 @@ struct LinkFit {
   bool absolute = false;  ///< A known mass gave the scale; if not, the gains' geometric mean is 1.
   /// Gain of the Bayesian information criterion by links over a point mass, by Wald's statistic.
   double better = 0;
-  bool links = false;      ///< Links are accepted; if not, the constants are those of a point mass.
-  double change_most = 0;  ///< Max. relative difference of masses between poses, 95 %; of links.
-  double residual = 0;     ///< RMS residual of the force, N.
-  double explained = 0;    ///< Share of the motors' force that the model explains.
+  bool links = false;     ///< Links are accepted; if not, the constants are those of a point mass.
+  double max_change = 0;  ///< Max. relative difference of masses between poses, 95 %; of links.
+  double residual = 0;    ///< RMS residual of the force, N.
+  double explained = 0;   ///< Share of the motors' force that the model explains.
   std::size_t windows = 0;  ///< Number of fitted pieces of motion.
 
   /// Pose of one of the motions.

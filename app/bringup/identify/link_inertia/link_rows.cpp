@@ -51,8 +51,8 @@ void LinkRows::put_frictions() {
   for (const MotionEquations& motion : equations_) {
     for (std::size_t i = 0; i < motion.equations().size(); ++i, ++k) {
       const MotionEquations::Row row = motion.row(i, 0);
-      fixed_(k, LinkFit::kViscous) = -row[PerMass::kViscous];
-      fixed_(k, LinkFit::kCoulomb) = -row[PerMass::kCoulomb];
+      fixed_(k, LinkFit::kViscous) = -row[MassNormalisedFit::kViscous];
+      fixed_(k, LinkFit::kCoulomb) = -row[MassNormalisedFit::kCoulomb];
     }
   }
 }
@@ -79,7 +79,7 @@ Eigen::MatrixXd LinkRows::pushed(double delay, std::size_t stride) const {
     for (std::size_t i = 0; i < motion.equations().size(); ++i, ++k) {
       if (k % stride != 0) continue;
       all.row(static_cast<Eigen::Index>(k / stride)) =
-          motion.row(i, delay).segment<3>(PerMass::kGain).transpose();
+          motion.row(i, delay).segment<3>(MassNormalisedFit::kGain).transpose();
     }
   }
   return all;
@@ -97,7 +97,8 @@ Eigen::MatrixXd LinkRows::rows(const Eigen::MatrixXd& gains, std::size_t stride,
   return all;
 }
 
-LinkRows::Columns LinkRows::least(const Eigen::MatrixXd& rows, const Eigen::VectorXd& right) const {
+LinkRows::Columns LinkRows::least_squares(const Eigen::MatrixXd& rows,
+                                          const Eigen::VectorXd& right) const {
   const Columns scale = rows.colwise().norm().transpose().unaryExpr(
       [](double norm) { return norm > 0 ? 1 / norm : 1.0; });
   Eigen::Matrix<double, kCount, kCount> normal = rows.transpose() * rows;

@@ -39,7 +39,7 @@ class LinkRows {
   /// Returns the constants of least squares; a column of zeros has the constant zero. The encoders'
   /// steps increase accelerations and so decrease masses. Their contribution to the sums is known,
   /// and is subtracted.
-  Columns least(const Eigen::MatrixXd& rows, const Eigen::VectorXd& right) const;
+  Columns least_squares(const Eigen::MatrixXd& rows, const Eigen::VectorXd& right) const;
 
   /// Returns the force (N) of mass, links and known mass in one equation.
   double taken(Eigen::Index number, const Columns& theta) const {

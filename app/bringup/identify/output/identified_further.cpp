@@ -7,9 +7,9 @@
 #include <cmath>
 #include <vector>
 
+#include "bringup/identify/output/cogging_section.h"
 #include "bringup/identify/output/file_lines.h"
-#include "bringup/identify/output/rubbing_section.h"
-#include "bringup/identify/output/waves_section.h"
+#include "bringup/identify/output/joint_friction_section.h"
 #include "math/elementary.h"
 #include "read_scene.h"
 #include "yaml/yaml_reader.h"
@@ -20,7 +20,7 @@ namespace {
 // Ratio of width to RMS of a uniform distribution.
 const double kWidth = std::sqrt(12.0);
 // s, RMS below which nothing is written [chosen: a hundredth of the visible effect in a tick].
-constexpr double kJitterLeast = 1e-6;
+constexpr double kJitterMin = 1e-6;
 
 std::int64_t ns(double s) {
   return std::llround(1e9 * s);
@@ -38,7 +38,7 @@ class Further {
         mark_(mark),
         lines_(lines) {}
 
-  bool put() { return put_link() && put_saturation() && tell_friction() && put_train(); }
+  bool put() { return put_link() && put_saturation() && write_friction_comments() && put_train(); }
 
   /// Returns whether a file that was read back has the written values.
   bool agrees(const scene::ArmFile& read) const {
@@ -48,8 +48,9 @@ class Further {
     return std::abs(firmware.report_period_ns - ns(period_)) <= ns(1e-5 * period_) + 1 &&
            std::abs(firmware.watchdog_ns - ns(watchdog_)) <= ns(1e-5 * watchdog_) + 1 &&
            std::abs(wire.jitter_ns - ns(jitter_)) <= ns(1e-5 * jitter_) + 1 &&
-           (file_.is<driver::DeltaArm>() || (reads_waves(read.simulated.drive_train, found_) &&
-                                             reads_rubbing(read.simulated.drive_train, found_)));
+           (file_.is<driver::DeltaArm>() ||
+            (reads_cogging(read.simulated.drive_train, found_) &&
+             reads_joint_friction(read.simulated.drive_train, found_)));
   }
 
  private:
@@ -72,7 +73,7 @@ class Further {
     if (timed) {
       const ReportTiming& reports = *found_.reports;
       period_ = 1e-9 * static_cast<double>(ns(reports.period.value));
-      const bool seen = reports.jitter.value > std::max(kJitterLeast, reports.jitter.plus_minus);
+      const bool seen = reports.jitter.value > std::max(kJitterMin, reports.jitter.plus_minus);
       jitter_ = seen ? kWidth * reports.jitter.value : 0;
       jitter_error = kWidth * reports.jitter.plus_minus;
       if (!exchange(firmware["report_period"], period_, "s", reports.period.plus_minus)) {
@@ -112,20 +113,20 @@ class Further {
 
   bool put_saturation() {
     std::string all;
-    double least = HUGE_VAL, error = 0;
+    double lowest = HUGE_VAL, error = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const Saturation& one = found_.saturation[i];
       if (!one.seen) continue;
       const driver::MotorDrive drive = asked_with(i);
       const double ampere = 1 / (drive.ratio * drive.torque_constant);
       all += fmt::format("{}motor {}: {:.3g}", all.empty() ? "" : ", ", i + 1,
-                         ampere * one.most.value);
-      if (ampere * one.most.value < least) {
-        least = ampere * one.most.value, error = ampere * one.most.plus_minus;
+                         ampere * one.max_torque.value);
+      if (ampere * one.max_torque.value < lowest) {
+        lowest = ampere * one.max_torque.value, error = ampere * one.max_torque.plus_minus;
       }
     }
     if (all.empty()) return true;
-    return exchange(simulation_["motors"]["current_max"], least,
+    return exchange(simulation_["motors"]["current_max"], lowest,
                     "A, the lowest saturation of all motors (" + all + ")", error);
   }
 
@@ -134,18 +135,19 @@ class Further {
   bool put_train() {
     if (!file_.is<driver::DeltaArm>()) {
       const YAML::Node train = simulation_["drive_train"];
-      std::vector<TrainKey> keys = wave_keys(train, found_, mark_);
-      for (TrainKey& key : rubbing_keys(train, found_, mark_)) keys.push_back(std::move(key));
+      std::vector<TrainKey> keys = cogging_keys(train, found_, mark_);
+      for (TrainKey& key : joint_friction_keys(train, found_, mark_))
+        keys.push_back(std::move(key));
       return put_train_keys(simulation_, keys, lines_);
     }
-    for (const TrainKey& key : rubbing_keys({}, found_, mark_)) {
+    for (const TrainKey& key : joint_friction_keys({}, found_, mark_)) {
       if (!lines_.add_behind(simulation_["tip"]["coulomb"], "# " + key.name +
                                                                 " of joints: " + key.value + "  " +
                                                                 key.remark + ": not simulated")) {
         return false;
       }
     }
-    for (std::size_t i = 0; found_.waves.told() && i < 3; ++i) {
+    for (std::size_t i = 0; found_.waves.is_reported() && i < 3; ++i) {
       if (!found_.waves.cogging[i].seen) continue;
       const Estimate cogging = cogging_at_motor(found_.waves, i, found_.constants.gain[i]);
       if (!lines_.add_behind(
@@ -160,9 +162,9 @@ class Further {
     return true;
   }
 
-  bool tell_friction() {
+  bool write_friction_comments() {
     const FrictionDirections& friction = found_.friction;
-    const auto tell = [&](const std::string& where, const Estimate& value) {
+    const auto write_comment = [&](const std::string& where, const Estimate& value) {
       return lines_.add_behind(
           simulation_["tip"]["coulomb"],
           fmt::format("# {:.3g} N along {} of the base [I {}, {}, +- {:.2g}]: not simulated",
@@ -171,14 +173,14 @@ class Further {
     for (std::size_t i = 0; i < 3; ++i) {
       const Estimate &mean = friction.mean[i], &uneven = friction.uneven[i];
       const std::string axis(1, "xyz"[i]);
-      if (friction.directions_differ && friction.tells(static_cast<int>(i))) {
+      if (friction.directions_differ && friction.is_observable(static_cast<int>(i))) {
         const double error = math::hypot(mean.plus_minus, uneven.plus_minus);
-        if (!tell("+" + axis, {mean.value - uneven.value, error}) ||
-            !tell("-" + axis, {mean.value + uneven.value, error})) {
+        if (!write_comment("+" + axis, {mean.value - uneven.value, error}) ||
+            !write_comment("-" + axis, {mean.value + uneven.value, error})) {
           return false;
         }
       } else if (friction.axes_differ || friction.directions_differ) {
-        if (!tell(axis, mean)) return false;
+        if (!write_comment(axis, mean)) return false;
       }
     }
     return true;

@@ -9,10 +9,10 @@ namespace thimble::bringup {
 /// Returns a coarse minimum of `residual_at(delay)`, s, in steps of half a millisecond.
 template <class Residual>
 double coarse_delay(const Residual& residual_at) {
-  double best = 0, least = residual_at(0.0);
-  for (double delay = 0.0005; delay < MotionEquations::kDelayMost; delay += 0.0005) {
+  double best = 0, lowest = residual_at(0.0);
+  for (double delay = 0.0005; delay < MotionEquations::kDelayMax; delay += 0.0005) {
     const double rest = residual_at(delay);
-    if (rest < least) least = rest, best = delay;
+    if (rest < lowest) lowest = rest, best = delay;
   }
   return best;
 }

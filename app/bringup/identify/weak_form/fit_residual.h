@@ -19,6 +19,6 @@ struct FitResidual {
 
 /// Returns the residuals of the constants and the delay of `fit`. Real-time: never from the servo
 /// thread.
-FitResidual residual_of(const MotionEquations& equations, const PerMass& fit);
+FitResidual residual_of(const MotionEquations& equations, const MassNormalisedFit& fit);
 
 }  // namespace thimble::bringup

@@ -14,7 +14,7 @@ namespace {
 constexpr int kHop = 15;         // ticks between bumps
 constexpr int kSmooth = 10;      // ticks to either side, for the sign of a velocity
 constexpr double kSlow = 0.003;  // m/s, below which the sign of a velocity is unknown
-constexpr int kSlowMost = 3;     // ticks at such speed of an axis that reverses and does not stick
+constexpr int kSlowMax = 3;      // ticks at such speed of an axis that reverses and does not stick
 
 }  // namespace
 
@@ -85,17 +85,17 @@ bool MotionEquations::stands(int middle, const std::vector<Eigen::Vector3d>& rat
   for (int joint = 0; joint < 3; ++joint) {
     int slow = 0;
     for (int j = -kHalf; j <= kHalf; ++j) {
-      const double least = kSlow * at(middle + j).G.row(joint).norm();
+      const double min_rate = kSlow * at(middle + j).G.row(joint).norm();
       const double turning = rate[static_cast<std::size_t>(middle + j)][joint];
-      slow = std::abs(turning) < least ? slow + 1 : 0;
-      if (slow > kSlowMost) return true;
+      slow = std::abs(turning) < min_rate ? slow + 1 : 0;
+      if (slow > kSlowMax) return true;
     }
   }
   return false;
 }
 
 void MotionEquations::gather() {
-  const int first = kHalf + static_cast<int>(kDelayMost / motion_.dt) + 2;
+  const int first = kHalf + static_cast<int>(kDelayMax / motion_.dt) + 2;
   const int end = static_cast<int>(motion_.samples.size()) - kHalf - kSmooth;
   for (int middle = first; middle < end; middle += kHop) {
     bool whole = true;
@@ -115,7 +115,7 @@ void MotionEquations::gather() {
         slowest = std::max(slowest, slow);
         left += bump_.curvature[i] * (at(middle + j).p_BT[axis] - at(middle).p_BT[axis]);
       }
-      if (slowest > kSlowMost) {
+      if (slowest > kSlowMax) {
         ++left_out_;
         continue;
       }
@@ -191,13 +191,13 @@ MotionEquations::Row MotionEquations::row(std::size_t number, double delay) cons
   int whole = 0;
   const double part = part_of(delay, whole);
   const Pushed &older = pushed_late(number, whole + 1), &newer = pushed_late(number, whole);
-  row.segment<3>(PerMass::kGain) = joined(older, newer, part);
-  row.segment<3>(PerMass::kInertia) = part * older.inert + (1 - part) * newer.inert;
-  row[PerMass::kViscous] = equation.viscous;
-  row[PerMass::kCoulomb] = equation.coulomb;
-  row[PerMass::kStiffness] = equation.stiffness;
+  row.segment<3>(MassNormalisedFit::kGain) = joined(older, newer, part);
+  row.segment<3>(MassNormalisedFit::kInertia) = part * older.inert + (1 - part) * newer.inert;
+  row[MassNormalisedFit::kViscous] = equation.viscous;
+  row[MassNormalisedFit::kCoulomb] = equation.coulomb;
+  row[MassNormalisedFit::kStiffness] = equation.stiffness;
   row /= area_;
-  row[PerMass::kWeight + equation.axis] = 1;
+  row[MassNormalisedFit::kWeight + equation.axis] = 1;
   return row;
 }
 

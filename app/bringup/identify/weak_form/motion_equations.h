@@ -12,16 +12,16 @@
 
 namespace thimble::bringup {
 
-/// A motion in the weak form: both sides of the law of PerMass integrated against smooth bumps of
-/// 60 ms. There is an equation for each bump and axis of the base in which the axis did not stand
-/// still. The motion must outlive it. Real-time: never from the servo thread.
+/// A motion in the weak form: both sides of the law of MassNormalisedFit integrated against smooth
+/// bumps of 60 ms. There is an equation for each bump and axis of the base in which the axis did
+/// not stand still. The motion must outlive it. Real-time: never from the servo thread.
 class MotionEquations {
  public:
-  static constexpr int kHalf = 30;            ///< Ticks to either side of a bump's middle.
-  static constexpr int kCluster = 500;        ///< Ticks whose residuals may be correlated.
-  static constexpr double kDelayMost = 0.02;  ///< s
-  /// Factors of the constants of PerMass::theta; the last column is the delay's.
-  using Row = Eigen::Matrix<double, PerMass::kCount + 1, 1>;
+  static constexpr int kHalf = 30;           ///< Ticks to either side of a bump's middle.
+  static constexpr int kCluster = 500;       ///< Ticks whose residuals may be correlated.
+  static constexpr double kDelayMax = 0.02;  ///< s
+  /// Factors of the constants of MassNormalisedFit::theta; the last column is the delay's.
+  using Row = Eigen::Matrix<double, MassNormalisedFit::kCount + 1, 1>;
 
   /// One bump of one axis: the left side, and the factors of the frictions.
   struct Equation {
@@ -116,7 +116,7 @@ class MotionEquations {
   static driver::Error torn_error(const ArmMotion& motion);
 
  private:
-  static constexpr std::size_t kLateMost = 24;  // ticks: kDelayMost and the margin of a search
+  static constexpr std::size_t kLateMax = 24;  // ticks: kDelayMax and the margin of a search
 
   /// Effect of torques on an equation when they are a number of ticks late. It consists of sums
   /// over the bump, of its value at the beginning of each tick and of its rise over it, joint by
@@ -145,7 +145,7 @@ class MotionEquations {
   std::vector<Eigen::Vector3d> velocity_, sign_;
   double mean_distance_ = 0;  // of a tick from the middle of the smoothing bump, s
   std::vector<Equation> equations_;
-  mutable std::array<std::vector<Pushed>, kLateMost> pushed_;  // by delay, for each equation
+  mutable std::array<std::vector<Pushed>, kLateMax> pushed_;  // by delay, for each equation
   std::size_t left_out_ = 0;
   std::size_t whole_ = 0, torn_ = 0;  // pieces of motion without and with ticks that have no report
 };

@@ -12,14 +12,14 @@ from .psychometric import Array, Psychometric, count, fit
 
 
 class ConstantStimuli(Trials):
-    """Levels in a shuffled order. A trial has ``condition["level"]``, its answer has the key `says`."""
+    """Levels in a shuffled order. A trial has ``condition["level"]``, its answer has the key `answer_key`."""
 
     def __init__(
         self,
         levels: Sequence[float],
         repeats: int,
         *,
-        says: str = "correct",
+        answer_key: str = "correct",
         order: str = "blocks",
         seed: int = 0,
         subject: Optional[int] = None,
@@ -27,30 +27,30 @@ class ConstantStimuli(Trials):
         """Create the trials.
 
         levels: in any unit. repeats: trials of each level.
-        says: key of the answer whose value is True or False; True is more frequent at higher levels.
+        answer_key: key of the answer whose value is True or False; True is more frequent at higher levels.
         order, seed, subject: as in :class:`Trials`; "balanced" needs the subject.
         """
         each = {"level": [float(one) for one in levels]}
         super().__init__(each, repeats=repeats, order=order, seed=seed, subject=subject)
-        self.says = says
+        self.answer_key = answer_key
         self._levels: list[float] = []
         self._answers: list[bool] = []
 
     def check(self, answer: Mapping[str, Any]) -> None:
         """Raise ArgumentError if an answer lacks the key."""
-        if not isinstance(answer.get(self.says), (bool, np.bool_)):
-            raise ArgumentError(f"answer: expected {self.says}=True or False, found {dict(answer)!r}.")
+        if not isinstance(answer.get(self.answer_key), (bool, np.bool_)):
+            raise ArgumentError(f"answer: expected {self.answer_key}=True or False, found {dict(answer)!r}.")
 
     def take(self, answer: Mapping[str, Any]) -> None:
         """Store the answer to the present trial."""
         self.check(answer)
         self._levels.append(self.conditions[self._next]["level"])
-        self._answers.append(bool(answer[self.says]))
+        self._answers.append(bool(answer[self.answer_key]))
         super().take(answer)
 
     def plan(self) -> dict[str, Any]:
         """Return everything that determines the trials, for the log."""
-        return {"levels": [one["level"] for one in self.conditions], "says": self.says}
+        return {"levels": [one["level"] for one in self.conditions], "says": self.answer_key}
 
     def counts(self) -> tuple[Array, Array, Array]:
         """Return the distinct levels, their numbers of True answers and their numbers of trials so far."""

@@ -19,8 +19,8 @@ _LAPSES = np.linspace(0.0, 0.06, 13)  # upper bound of the search with lapse="fi
 # Size of the initial grid over the levels' span, and number of its minima that are refined.
 _MIDDLES = np.linspace(-0.5, 1.5, 41)
 _LOG_WIDTHS = np.linspace(math.log(0.005), math.log(4.0), 14)
-_BEGINS_MOST = 8
-_STEPS_MOST = 100
+_MAX_STARTS = 8
+_MAX_STEPS = 100
 _NARROWEST = 1e-3  # width relative to the levels' span; the data cannot distinguish a narrower one from a step
 
 
@@ -109,12 +109,12 @@ def fit(
         raise ArgumentError("levels: expected two or more different levels.")
     if lapse == "fit":
         curves = [_fitted(x, k, n, shape, guess, float(one)) for one in _LAPSES]
-        curve, held = min(curves, key=lambda one: one[0].deviance)
+        curve, determined = min(curves, key=lambda one: one[0].deviance)
     elif isinstance(lapse, str) or not 0.0 <= lapse < 1.0 - guess:
         raise ArgumentError(f'lapse: expected "fit" or 0 to {1.0 - guess:g}, found {lapse!r}.')
     else:
-        curve, held = _fitted(x, k, n, shape, guess, float(lapse))
-    if not held:
+        curve, determined = _fitted(x, k, n, shape, guess, float(lapse))
+    if not determined:
         warnings.warn(
             "The answers do not determine the width of the curve. Use levels closer to the threshold, or more trials.",
             RuntimeWarning,
@@ -171,7 +171,7 @@ def _fitted(
 
     def improved(values: Array) -> tuple[float, Array]:
         loss = _loss(at(values)[0], k, n)
-        for _ in range(_STEPS_MOST):
+        for _ in range(_MAX_STEPS):
             matrix, ascent = information(values)
             # If one level dominates, the matrix is nearly singular, and damped steps converge better.
             there, tried = loss, values
@@ -187,15 +187,15 @@ def _fitted(
                 return loss, values
         return loss, values
 
-    loss, best = min((improved(one) for one in _begins(x, k, n, shape, guess, lapse)), key=lambda one: one[0])
+    loss, best = min((improved(one) for one in _start_points(x, k, n, shape, guess, lapse)), key=lambda one: one[0])
     _refuse_flat(k, n, loss)
     matrix, _ = information(best)
     errors = np.full(2, math.nan)
-    held = narrowest + 1e-6 < best[1] < narrowest + 13.9 and bool(np.linalg.cond(matrix) < 1e12)
-    if held:
-        told = np.sqrt(np.diag(np.linalg.inv(matrix)))
-        held = bool(told[1] < 1.0)  # the standard error of the log width is below 1
-        errors = told if held else errors
+    determined = narrowest + 1e-6 < best[1] < narrowest + 13.9 and bool(np.linalg.cond(matrix) < 1e12)
+    if determined:
+        deviations = np.sqrt(np.diag(np.linalg.inv(matrix)))
+        determined = bool(deviations[1] < 1.0)  # the standard error of the log width is below 1
+        errors = deviations if determined else errors
     own = _loss(k / n, k, n)
     width = span * math.exp(best[1])
     curve = Psychometric(
@@ -208,10 +208,10 @@ def _fitted(
         width_error=float(errors[1]) * width,
         deviance=max(0.0, 2.0 * (loss - own)),
     )
-    return curve, held
+    return curve, determined
 
 
-def _begins(x: Array, k: Array, n: Array, shape: str, guess: float, lapse: float) -> list[Array]:
+def _start_points(x: Array, k: Array, n: Array, shape: str, guess: float, lapse: float) -> list[Array]:
     """Return the start points of the search: separate local minima of a grid over middle and log width, best first.
 
     The loss has several minima, especially with guess > 0, and the best grid point is not always near the
@@ -229,7 +229,7 @@ def _begins(x: Array, k: Array, n: Array, shape: str, guess: float, lapse: float
         # Start points of one flat region lead to the same minimum.
         if all(max(abs(valley[0] - one[0]), abs(valley[1] - one[1])) > 2 for one in chosen):
             chosen.append(valley)
-        if len(chosen) == _BEGINS_MOST:
+        if len(chosen) == _MAX_STARTS:
             break
     return [np.array([_MIDDLES[i], _LOG_WIDTHS[j]]) for i, j in chosen]
 

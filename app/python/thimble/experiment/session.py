@@ -142,8 +142,8 @@ class Session:
         condition = self.procedure.condition()
         if condition is None:
             raise Error("The session is over: there is no trial to answer.")
-        told = {"correct": bool(answer)} if isinstance(answer, (bool, np.bool_)) else dict(answer)
-        line = {"trial": self._number, "condition": condition, "answer": told}
+        entry = {"correct": bool(answer)} if isinstance(answer, (bool, np.bool_)) else dict(answer)
+        line = {"trial": self._number, "condition": condition, "answer": entry}
         _check(self.procedure, json.loads(line_of(line))["answer"])
         self._take(self._log.write(line))
 

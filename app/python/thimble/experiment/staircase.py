@@ -30,30 +30,30 @@ class Staircase:
         highest: float = np.inf,
         reversals: int = 12,
         last: int = 8,
-        trials_most: int = 400,
+        max_trials: int = 400,
     ) -> None:
         """Create a staircase at its first level.
 
         start: first level, in any unit. step: size of a step, or a list of sizes; each reversal selects
         the next size, and the last size remains. multiply: a step multiplies or divides by its size
         (above 1), and averages are those of logarithms. up_ratio: size of a step up, in steps down.
-        lowest, highest: bounds of the level. reversals, trials_most: the staircase ends after this number
+        lowest, highest: bounds of the level. reversals, max_trials: the staircase ends after this number
         of reversals or of trials. last: number of last reversals whose mean is the threshold.
         """
         self._steps = [float(one) for one in np.atleast_1d(np.asarray(step, dtype=np.float64))]
-        least = 1.0 if multiply else 0.0
-        if not self._steps or not all(np.isfinite(one) and one > least for one in self._steps):
-            raise ArgumentError(f"step: expected numbers above {least:g}, found {step!r}.")
+        smallest = 1.0 if multiply else 0.0
+        if not self._steps or not all(np.isfinite(one) and one > smallest for one in self._steps):
+            raise ArgumentError(f"step: expected numbers above {smallest:g}, found {step!r}.")
         if down < 1 or up < 1 or not up_ratio > 0:
             raise ArgumentError("down, up: expected 1 or more; up_ratio: above 0.")
-        if not 1 <= last <= reversals or trials_most < 1:
+        if not 1 <= last <= reversals or max_trials < 1:
             raise ArgumentError(f"last: expected 1 to reversals ({reversals}), found {last}.")
         if not lowest <= start <= highest or (multiply and not start > 0):
             raise ArgumentError(f"start: expected a level between the bounds, found {start}.")
         self.down, self.up, self.multiply = int(down), int(up), bool(multiply)
         self._start, self._up_ratio = float(start), float(up_ratio)
         self._lowest, self._highest = float(lowest), float(highest)
-        self._reversals_most, self._last, self._trials_most = int(reversals), int(last), int(trials_most)
+        self._max_reversals, self._last, self._max_trials = int(reversals), int(last), int(max_trials)
         self.level = float(start)  #: level of the next trial
         self.levels: list[float] = []  #: levels of all trials so far
         self.answers: list[bool] = []  #: answers to them, whether correct
@@ -64,7 +64,7 @@ class Staircase:
     @property
     def over(self) -> bool:
         """Whether there are enough reversals or trials."""
-        return len(self.reversals) >= self._reversals_most or len(self.levels) >= self._trials_most
+        return len(self.reversals) >= self._max_reversals or len(self.levels) >= self._max_trials
 
     def condition(self) -> Optional[dict[str, Any]]:
         """Return the condition of the next trial, ``{"level": ...}``; None after the last."""
@@ -126,8 +126,8 @@ class Staircase:
                 "up_ratio": self._up_ratio,
                 "multiply": self.multiply,
                 "bounds": bounds,
-                "reversals": self._reversals_most,
-                "trials_most": self._trials_most,
+                "reversals": self._max_reversals,
+                "trials_most": self._max_trials,
             }
         }
 

@@ -68,7 +68,7 @@ class TouchEnv(Base):
         self._scene = scene
         info = Stepper(scene, **self._options).info
         self._rate = float(info["rate"])
-        self._ticks_most = max(1, round(self._seconds * self._rate))
+        self._max_ticks = max(1, round(self._seconds * self._rate))
         self.action_space, self.observation_space = spaces_of(info, workspace)
         self.render_mode = None
         self._stepper: Optional[Stepper] = None
@@ -103,7 +103,7 @@ class TouchEnv(Base):
         self._stepper.step()
         self._ticks = 1
         self._over = False
-        return self._felt(self._tick(), {"reached": True, "seed": episode_seed})
+        return self._observe(self._tick(), {"reached": True, "seed": episode_seed})
 
     def step(self, action: ArrayLike) -> tuple[Vector, float, bool, bool, dict[str, Any]]:
         """Run ``frame_skip`` ticks, and return observation, reward, terminated, truncated, info.
@@ -116,17 +116,17 @@ class TouchEnv(Base):
         goal = np.asarray(action, dtype=np.float64)
         if goal.shape != (3,) or not np.isfinite(goal).all():
             raise ArgumentError(f"action: expected three numbers, found {action!r}.")
-        reached = _lead(stepper, goal)
+        reached = _step_towards(stepper, goal)
         went = 1
-        while went < self._frame_skip and self._ticks + went < self._ticks_most and stepper.step():
+        while went < self._frame_skip and self._ticks + went < self._max_ticks and stepper.step():
             went += 1
         self._ticks += went
         tick = self._tick()
-        observation, info = self._felt(tick, {"reached": reached})
+        observation, info = self._observe(tick, {"reached": reached})
         terminated = stepper.end == "fault" or tick.fault != ""
         if self._terminated is not None:
             terminated = bool(self._terminated(tick, goal)) or terminated
-        truncated = self._ticks >= self._ticks_most
+        truncated = self._ticks >= self._max_ticks
         self._over = terminated or truncated
         return observation, float(self._reward(tick, goal)), terminated, truncated, info
 
@@ -141,14 +141,14 @@ class TouchEnv(Base):
         return tick
 
     @staticmethod
-    def _felt(tick: Tick, info: dict[str, Any]) -> tuple[Vector, dict[str, Any]]:
+    def _observe(tick: Tick, info: dict[str, Any]) -> tuple[Vector, dict[str, Any]]:
         contact = float(tick.in_contact)
         observation = np.concatenate([tick.tip, tick.velocity, tick.force, [float(tick.depth), contact]])
         info.update(time=float(tick.time), object=int(tick.object), fault=tick.fault)
         return observation, info
 
 
-def _lead(stepper: Stepper, goal: Vector) -> bool:
+def _step_towards(stepper: Stepper, goal: Vector) -> bool:
     """Run a tick with a new target of the hand. Returns False, and keeps the old target, if it is out of reach."""
     try:
         stepper.step(hand=goal)

@@ -19,7 +19,7 @@ Vector = NDArray[np.float64]
 Rewards = Callable[[Ticks, Vector], ArrayLike]
 Ends = Callable[[Ticks, Vector], ArrayLike]
 
-_ARMS_MOST = 1_000_000  # 100 GB and more; [chosen] to detect a wrong unit
+_MAX_ARMS = 1_000_000  # 100 GB and more; [chosen] to detect a wrong unit
 
 
 class TouchVectorEnv(VectorBase):
@@ -59,7 +59,7 @@ class TouchVectorEnv(VectorBase):
         never. Their values for arms that are restarted are ignored. The other options and errors are
         those of :class:`TouchEnv`.
         """
-        self.num_envs = whole_of("count", count, 1, _ARMS_MOST)
+        self.num_envs = whole_of("count", count, 1, _MAX_ARMS)
         self._frame_skip = whole_of("frame_skip", frame_skip, 1)
         self._reward = reward
         self._terminated = terminated
@@ -76,7 +76,7 @@ class TouchVectorEnv(VectorBase):
             warnings.warn(warning, RuntimeWarning, stacklevel=2)
         info = self._batch.info()
         self._rate = float(info["rate"])
-        self._ticks_most = max(1, round(float(seconds) * self._rate))
+        self._max_ticks = max(1, round(float(seconds) * self._rate))
         self.single_action_space, self.single_observation_space = spaces_of(info, workspace)
         self.action_space = batched(self.single_action_space, self.num_envs)
         self.observation_space = batched(self.single_observation_space, self.num_envs)
@@ -124,7 +124,7 @@ class TouchVectorEnv(VectorBase):
                 self._randoms[i] = np.random.default_rng(one)
         everyone = np.ones(self.num_envs, np.bool_)
         begun = self._begin(everyone, (options or {}).get("seed"))
-        return self._felt(everyone, begun, everyone)
+        return self._observe(everyone, begun, everyone)
 
     def step(
         self, actions: ArrayLike
@@ -135,26 +135,26 @@ class TouchVectorEnv(VectorBase):
             raise ArgumentError(f"actions: expected the shape {self.action_space.shape}, found {goals.shape}.")
         if self._newest is None:
             raise Error("The environments have no episodes: call reset().")
-        anew = self._over.copy()
-        if not np.isfinite(goals[~anew]).all():
+        new_episode = self._over.copy()
+        if not np.isfinite(goals[~new_episode]).all():
             raise ArgumentError("actions: expected three numbers for each arm.")
-        ticks = np.where(anew, 0, np.minimum(self._frame_skip, self._ticks_most - self._ticks))
+        ticks = np.where(new_episode, 0, np.minimum(self._frame_skip, self._max_ticks - self._ticks))
         columns, reached = self._core().step(ticks.astype(np.uint32), goals)
         self._ticks += ticks
         self._newest = Ticks(columns)
-        begun = self._begin(anew, None)
-        felt = self._newest
-        terminated = felt.columns["fault"] != 0
+        begun = self._begin(new_episode, None)
+        ticks_now = self._newest
+        terminated = ticks_now.columns["fault"] != 0
         if self._terminated is not None:
-            terminated = terminated | self._asked("terminated", self._terminated(felt, goals), np.bool_)
+            terminated = terminated | self._checked("terminated", self._terminated(ticks_now, goals), np.bool_)
         rewards = np.zeros(self.num_envs)
         if self._reward is not None:
-            rewards = self._asked("reward", self._reward(felt, goals), np.float64)
-        rewards[anew] = 0.0
-        terminated &= ~anew
-        truncated = (self._ticks >= self._ticks_most) & ~anew
+            rewards = self._checked("reward", self._reward(ticks_now, goals), np.float64)
+        rewards[new_episode] = 0.0
+        terminated &= ~new_episode
+        truncated = (self._ticks >= self._max_ticks) & ~new_episode
         self._over = terminated | truncated
-        observations, infos = self._felt(anew, begun, reached.astype(np.bool_))
+        observations, infos = self._observe(new_episode, begun, reached.astype(np.bool_))
         return observations, rewards, terminated, truncated, infos
 
     def close(self, **_: Any) -> None:
@@ -168,8 +168,8 @@ class TouchVectorEnv(VectorBase):
             raise Error("The environments are closed. Create a new object.")
         return self._batch
 
-    def _asked(self, name: str, told: ArrayLike, kind: Any) -> NDArray[Any]:
-        array = np.array(told, dtype=kind)
+    def _checked(self, name: str, values: ArrayLike, kind: Any) -> NDArray[Any]:
+        array = np.array(values, dtype=kind)
         if array.shape != (self.num_envs,):
             raise ArgumentError(f"{name}: expected the shape ({self.num_envs},), found {array.shape}.")
         return array
@@ -190,7 +190,7 @@ class TouchVectorEnv(VectorBase):
         self._over[which] = False
         return seeds
 
-    def _felt(
+    def _observe(
         self, begun: NDArray[np.bool_], seeds: NDArray[np.uint64], reached: NDArray[np.bool_]
     ) -> tuple[Vector, dict[str, Any]]:
         ticks = self.ticks
@@ -199,14 +199,14 @@ class TouchVectorEnv(VectorBase):
             axis=1,
         )
         faults = np.array([_core.fault(int(one))[0] if one else "" for one in ticks.columns["fault"]], dtype=object)
-        told: dict[str, NDArray[Any]] = {
+        values_by_key: dict[str, NDArray[Any]] = {
             "reached": reached,
             "time": np.array(ticks.time),
             "object": ticks.object.astype(np.int64),
             "fault": faults,
         }
         infos: dict[str, Any] = {}
-        for key, values in told.items():
+        for key, values in values_by_key.items():
             infos[key], infos["_" + key] = values, np.ones(self.num_envs, np.bool_)
         if begun.any():
             infos["seed"], infos["_seed"] = seeds.astype(np.int64), begun.copy()

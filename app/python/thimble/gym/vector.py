@@ -63,8 +63,8 @@ class VectorEnv(VectorBase):
             raise ArgumentError(f'start: expected "spawn" or "forkserver", found {start!r}.')
         if workers is not None and workers < 1:
             raise ArgumentError(f"workers: expected 1 or more, found {workers}.")
-        most = workers if workers is not None else len(os.sched_getaffinity(0))
-        shares = np.array_split(np.arange(len(makes)), min(most, len(makes)))
+        max_workers = workers if workers is not None else len(os.sched_getaffinity(0))
+        shares = np.array_split(np.arange(len(makes)), min(max_workers, len(makes)))
         self.num_envs = len(makes)
         self.closed = False
         self._workers: list[_Worker] = []
@@ -101,9 +101,9 @@ class VectorEnv(VectorBase):
         the environments' infos, and with the name ``_key`` a mask of the environments that have the key.
         """
         seeds = seeds_of(seed, self.num_envs)
-        told = self._ask("reset", [(one, options) for one in seeds])
+        results = self._ask("reset", [(one, options) for one in seeds])
         self._begun = True
-        return np.stack([observation for observation, _ in told]), _gathered([info for _, info in told])
+        return np.stack([observation for observation, _ in results]), _gathered([info for _, info in results])
 
     def step(
         self, actions: ArrayLike
@@ -114,13 +114,13 @@ class VectorEnv(VectorBase):
             raise ArgumentError(f"actions: expected the shape {self.action_space.shape}, found {each.shape}.")
         if not self._begun:
             raise Error("The environments have no episodes: call reset().")
-        told = self._ask("step", list(each))
+        results = self._ask("step", list(each))
         return (
-            np.stack([one[0] for one in told]),
-            np.array([one[1] for one in told], dtype=np.float64),
-            np.array([one[2] for one in told], dtype=np.bool_),
-            np.array([one[3] for one in told], dtype=np.bool_),
-            _gathered([one[4] for one in told]),
+            np.stack([one[0] for one in results]),
+            np.array([one[1] for one in results], dtype=np.float64),
+            np.array([one[2] for one in results], dtype=np.bool_),
+            np.array([one[3] for one in results], dtype=np.bool_),
+            _gathered([one[4] for one in results]),
         )
 
     def close(self, **_: Any) -> None:
@@ -136,16 +136,16 @@ class VectorEnv(VectorBase):
     def _ask(self, what: str, each: list[Any]) -> list[Any]:
         if self.closed:
             raise Error("The environments are closed. Create a new object.")
-        told: list[Any] = []
+        results: list[Any] = []
         try:
             for worker in self._workers:
                 worker.send((what, [each[i] for i in worker.share]))
             for worker in self._workers:
-                told += worker.receive()
+                results += worker.receive()
         except BaseException:  # half an answer is in the pipes, so the object is unusable, also after Ctrl-C
             self.close()
             raise
-        return told
+        return results
 
 
 class _Worker:
@@ -168,7 +168,7 @@ class _Worker:
 
     def receive(self) -> Any:
         try:
-            kind, told = self._pipe.recv()
+            kind, results = self._pipe.recv()
         except (EOFError, ConnectionResetError):
             self.process.join()
             at = ", ".join(map(str, self.share))
@@ -176,8 +176,8 @@ class _Worker:
                 f"The process of the environments {at} ended (exit code {self.process.exitcode}). All are closed."
             ) from None
         if kind == "wrong":
-            raise Error(f"In the process of environment {self.share[told[0]]}: {told[1]}")
-        return told
+            raise Error(f"In the process of environment {self.share[results[0]]}: {results[1]}")
+        return results
 
     def close(self) -> None:
         self._pipe.close()  # this ends the process
@@ -213,21 +213,21 @@ def _serve(pipe: Connection, parcel: bytes) -> None:
         for at, make in enumerate(makes):
             environments.append(make())
         over = [False] * len(environments)
-        pipe.send(("told", (environments[0].observation_space, environments[0].action_space)))
+        pipe.send(("results", (environments[0].observation_space, environments[0].action_space)))
         while True:
             what, each = pipe.recv()
-            told = []
+            results = []
             for at, environment in enumerate(environments):
                 if what == "reset":
-                    told.append(environment.reset(seed=each[at][0], options=each[at][1]))
+                    results.append(environment.reset(seed=each[at][0], options=each[at][1]))
                     over[at] = False
                 elif over[at]:
-                    told.append((lambda begun: (begun[0], 0.0, False, False, begun[1]))(environment.reset()))
+                    results.append((lambda begun: (begun[0], 0.0, False, False, begun[1]))(environment.reset()))
                     over[at] = False
                 else:
-                    told.append(environment.step(each[at]))
-                    over[at] = bool(told[-1][2] or told[-1][3])
-            pipe.send(("told", told))
+                    results.append(environment.step(each[at]))
+                    over[at] = bool(results[-1][2] or results[-1][3])
+            pipe.send(("results", results))
     except (EOFError, BrokenPipeError, ConnectionResetError):
         pass
     except Exception:
@@ -239,12 +239,12 @@ def _gathered(infos: list[dict[str, Any]]) -> dict[str, Any]:
     """Return infos as arrays by key, and as ``_key`` a mask of the environments that have the key."""
     gathered: dict[str, Any] = {}
     for key in dict.fromkeys(key for info in infos for key in info):
-        told = np.array([key in info for info in infos])
+        results = np.array([key in info for info in infos])
         first = next(info[key] for info in infos if key in info)
         plain = isinstance(first, (bool, int, float))
         values = np.zeros(len(infos), dtype=type(first) if plain else object)
         for at, info in enumerate(infos):
             if key in info:
                 values[at] = info[key]
-        gathered[key], gathered["_" + key] = values, told
+        gathered[key], gathered["_" + key] = values, results
     return gathered

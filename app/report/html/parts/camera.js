@@ -25,13 +25,13 @@ function makeEye(canvas, changed) {
       eye.place(camera);
       camera.updateMatrixWorld();
       camera.matrixWorldInverse.getInverse(camera.matrixWorld);
-      let most = 0;
+      let largest = 0;
       for (let corner = 0; corner < 8; ++corner) {
         const p = new THREE.Vector3(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
                                     corner & 4 ? box.max.z : box.min.z).project(camera);
-        most = Math.max(most, Math.abs(p.x), Math.abs(p.y));
+        largest = Math.max(largest, Math.abs(p.x), Math.abs(p.y));
       }
-      eye.distance *= most;
+      eye.distance *= largest;
     }
     eye.home = {target: eye.target.clone(), yaw: eye.yaw, pitch: eye.pitch, distance: eye.distance};
   };

@@ -2,10 +2,10 @@
 
 // Column that grows at its end; `array` is its current contents.
 class Column {
-  constructor(type, width, most) {
+  constructor(type, width, maxRows) {
     this.width = width;
-    this.most = most;
-    this.store = new type(2 * most * width);
+    this.maxRows = maxRows;
+    this.store = new type(2 * maxRows * width);
     this.clear();
   }
   clear() {
@@ -16,14 +16,14 @@ class Column {
     this.array = this.store.subarray(this.width * this.first, this.width * (this.first + this.rows));
   }
   push(numbers) {
-    const rows = Math.min(this.most, numbers.length / this.width);
-    if (this.first + this.rows + rows > 2 * this.most) {
+    const rows = Math.min(this.maxRows, numbers.length / this.width);
+    if (this.first + this.rows + rows > 2 * this.maxRows) {
       this.store.copyWithin(0, this.width * this.first, this.width * (this.first + this.rows));
       this.first = 0;
     }
     this.store.set(numbers.subarray(numbers.length - rows * this.width), this.width * (this.first + this.rows));
     this.rows += rows;
-    this.drop(this.rows - this.most);
+    this.drop(this.rows - this.maxRows);
   }
   // Drops the given number of oldest rows.
   drop(rows) {
@@ -37,12 +37,12 @@ class Column {
 
 function makeLive(changed) {
   const live = {state: 'connecting', notice: '', lost: 0, lostHere: 0, figures: false, marks: false, updates: 0};
-  const most = Math.floor(about.live.rows / arms.length);
-  const kPicturesMost = 4000;  // poses of bodies and arms: 30 a second, with some margin
+  const maxRows = Math.floor(about.live.rows / arms.length);
+  const kPicturesMax = 4000;  // poses of bodies and arms: 30 a second, with some margin
   const columns = arms.map(arm => {
     const own = {};
-    for (const [name, width] of Object.entries(kColumns)) own[name] = new Column(arm[name].constructor, width, most);
-    own.force = new Column(Float32Array, 1, most);
+    for (const [name, width] of Object.entries(kColumns)) own[name] = new Column(arm[name].constructor, width, maxRows);
+    own.force = new Column(Float32Array, 1, maxRows);
     return own;
   });
   const marks = arms.map(() => new Map());
@@ -59,27 +59,27 @@ function makeLive(changed) {
     shapes.base.clear();
   }
 
-  function takeArm(number, told, get) {
+  function takeArm(number, part, get) {
     const arm = arms[number];
     const own = columns[number];
     const column = name => get('arm' + number + '.' + name);
-    if (told.rows > 0) {
+    if (part.rows > 0) {
       for (const name of Object.keys(kColumns)) own[name].push(column(name));
       // Of arms after the first only the newest ticks are sent, so there are no periods.
       if (number > 0) own.period.array[own.period.array.length - 1] = NaN;
       const sent = column('sent');
-      const force = Float32Array.from({length: told.rows}, (_, i) => lengthAt(sent, i));
+      const force = Float32Array.from({length: part.rows}, (_, i) => lengthAt(sent, i));
       own.force.push(force);
-      for (const one of force) if (one > arm.forceMost) arm.forceMost = one;
+      for (const one of force) if (one > arm.maxForce) arm.maxForce = one;
     }
-    if (told.lines && told.lines.length > 0 && column('bars').length > 0) {
-      const points = told.lines.reduce((sum, one) => sum + one, 0);
-      arm.lines = arm.lines || told.lines;
-      bars[number] = bars[number] || {t: new Column(Float64Array, 1, kPicturesMost), points: new Column(Float32Array, 3 * points, kPicturesMost)};
+    if (part.lines && part.lines.length > 0 && column('bars').length > 0) {
+      const points = part.lines.reduce((sum, one) => sum + one, 0);
+      arm.lines = arm.lines || part.lines;
+      bars[number] = bars[number] || {t: new Column(Float64Array, 1, kPicturesMax), points: new Column(Float32Array, 3 * points, kPicturesMax)};
       bars[number].t.push(column('bar_t'));
       bars[number].points.push(column('bars'));
     }
-    for (const [mark, words] of told.marks) {
+    for (const [mark, words] of part.marks) {
       marks[number].set(mark, words);
       if (marks[number].size > 500) marks[number].delete(marks[number].keys().next().value);
       live.marks = true;
@@ -91,11 +91,11 @@ function makeLive(changed) {
       forget();
       live.lostHere += update.lost_here;
     }
-    (update.arms || []).forEach((told, number) => takeArm(number, told, get));
+    (update.arms || []).forEach((part, number) => takeArm(number, part, get));
     if (update.bodies) {
       about.bodies = about.bodies || update.bodies;
       const width = 7 * about.bodies.objects.length;
-      bodyColumns = bodyColumns || {t: new Column(Float64Array, 1, kPicturesMost), poses: new Column(Float32Array, width, kPicturesMost)};
+      bodyColumns = bodyColumns || {t: new Column(Float64Array, 1, kPicturesMax), poses: new Column(Float32Array, width, kPicturesMax)};
       bodyColumns.t.push(get('bodies.t'));
       bodyColumns.poses.push(get('bodies.poses'));
     }
@@ -149,7 +149,7 @@ function makeLive(changed) {
       span.begin = some[0].t[0];
       span.end = Math.max(span.begin + 0.001, ...some.map(arm => arm.t[arm.t.length - 1]));
     }
-    forceScale = Math.max(forceScale, roundUp(Math.max(...arms.map(arm => arm.forceMost))));
+    forceScale = Math.max(forceScale, roundUp(Math.max(...arms.map(arm => arm.maxForce))));
   }
 
   const decoder = new TextDecoder();

@@ -24,7 +24,7 @@ function meshGeometry(vertices, corners, crease) {
   const next = first.slice();
   const meeting = new Uint32Array(corners.length);
   for (let i = 0; i < corners.length; ++i) meeting[next[corners[i]]++] = (i / 3) | 0;
-  const least = Math.cos(crease);
+  const minCosine = Math.cos(crease);
   const places = new Float32Array(3 * corners.length);
   const normals = new Float32Array(3 * corners.length);
   for (let i = 0; i < corners.length; ++i) {
@@ -35,7 +35,7 @@ function meshGeometry(vertices, corners, crease) {
       const other = 3 * meeting[m];
       const dot = unit[own] * unit[other] + unit[own + 1] * unit[other + 1] +
                   unit[own + 2] * unit[other + 2];
-      if (dot < least) continue;
+      if (dot < minCosine) continue;
       x += flat[other];
       y += flat[other + 1];
       z += flat[other + 2];
@@ -56,17 +56,17 @@ function pathTube(arm, begin, end, step, radius) {
   const kSides = 6;
   const rows = [];
   const forces = [];
-  let most = 0;
+  let maxForce = 0;
   const at = i => new THREE.Vector3(arm.proxy[3 * i], arm.proxy[3 * i + 1], arm.proxy[3 * i + 2]);
   let last = null;
   for (let i = begin; i < end; ++i) {
-    most = Math.max(most, arm.touching[i] ? arm.force[i] : 0);
+    maxForce = Math.max(maxForce, arm.touching[i] ? arm.force[i] : 0);
     const p = at(i);
     if (last && p.distanceTo(last) < step && i + 1 < end) continue;
     last = p;
     rows.push(i);
-    forces.push(most);
-    most = 0;
+    forces.push(maxForce);
+    maxForce = 0;
   }
   const places = new Float32Array(3 * kSides * rows.length);
   const normals = new Float32Array(3 * kSides * rows.length);

@@ -57,17 +57,17 @@ function armOf(number) {
   arm.barTimes = column('bar_t');
   arm.bars = column('bars');
   arm.force = new Float32Array(arm.t.length);
-  arm.forceMost = 0;
+  arm.maxForce = 0;
   for (let i = 0; i < arm.t.length; ++i) {
     arm.force[i] = lengthAt(arm.sent, i);
-    if (arm.force[i] > arm.forceMost) arm.forceMost = arm.force[i];
+    if (arm.force[i] > arm.maxForce) arm.maxForce = arm.force[i];
   }
   return arm;
 }
 const arms = about.arms.map((_, number) => armOf(number));
 // Time range of the page, s; both ends move in a live run.
 const span = {begin: 0, end: Math.max(0.001, ...arms.map(arm => (arm.t.length ? arm.t[arm.t.length - 1] : 0)))};
-let forceScale = roundUp(Math.max(...arms.map(arm => arm.forceMost)));
+let forceScale = roundUp(Math.max(...arms.map(arm => arm.maxForce)));
 
 // Colour of a force: grey for none, then light to dark; distinguishable for colour-blind people.
 const kForceStops = [[0.98, 0.82, 0.30], [0.95, 0.56, 0.17], [0.84, 0.25, 0.05], [0.38, 0.03, 0.12]];

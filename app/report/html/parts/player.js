@@ -207,9 +207,9 @@
     } else {
       // Starts at the largest force.
       const arm = arms[0];
-      let most = 0;
-      for (let i = 1; i < arm.t.length; ++i) if (arm.force[i] > arm.force[most]) most = i;
-      player.seek(arm.t.length ? arm.t[most] : 0);
+      let peak = 0;
+      for (let i = 1; i < arm.t.length; ++i) if (arm.force[i] > arm.force[peak]) peak = i;
+      player.seek(arm.t.length ? arm.t[peak] : 0);
       player.fresh = true;  // the first playback starts at the beginning
     }
     requestAnimationFrame(frame);

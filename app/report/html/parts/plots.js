@@ -14,12 +14,12 @@ const kPlots = [
 // Returns the rows to draw between two times: as many as a screen shows, with every minimum and maximum. The first
 // and the last row of all are included, so that the axis has its full range.
 function rowsToDraw(arm, channels, begin, end) {
-  const kMost = 1500;
+  const kMax = 1500;
   const rows = arm.t.length;
   const first = Math.max(0, placeOf(arm.t, begin) - 1);
   const last = Math.min(rows - 1, placeOf(arm.t, end) + 1);
   const picked = new Set([0, first, last, rows - 1]);
-  const stride = Math.max(1, (last - first) / kMost);
+  const stride = Math.max(1, (last - first) / kMax);
   for (let bucket = first; bucket < last; bucket += stride) {
     const [from, to] = [Math.floor(bucket), Math.min(last, Math.floor(bucket + stride))];
     for (const channel of channels) {
@@ -103,8 +103,8 @@ function makePlots(box, player) {
              x: {axisLabelFormatter: t => +t.toFixed(4) + ' s'}},
       underlayCallback: underlay,
       clickCallback: (event, t) => player.seek(t),
-      highlightCallback: (event, t) => { graph.hovered = t; plots.tell(graph); },
-      unhighlightCallback: () => { graph.hovered = null; plots.tell(graph); },
+      highlightCallback: (event, t) => { graph.hovered = t; plots.showValues(graph); },
+      unhighlightCallback: () => { graph.hovered = null; plots.showValues(graph); },
       zoomCallback: (begin, end) => plots.setWindow(begin, end),
       drawCallback: dygraph => {
         const [begin, end] = dygraph.xAxisRange();
@@ -151,7 +151,7 @@ function makePlots(box, player) {
     plots.refresh();
   };
   // Shows the values under the mouse, or at the player's time.
-  plots.tell = graph => {
+  plots.showValues = graph => {
     const arm = arms[player.arm];
     if (arm.t.length === 0) return;
     const i = placeOf(arm.t, graph.hovered === null ? player.t : graph.hovered);
@@ -165,7 +165,7 @@ function makePlots(box, player) {
       const inside = t >= plots.window[0] - 1e-9 && t <= plots.window[1] + 1e-9;
       graph.cursor.hidden = !inside;
       if (inside) graph.cursor.style.left = graph.dygraph.toDomXCoord(t) + 'px';
-      if (graph.hovered === null) plots.tell(graph);
+      if (graph.hovered === null) plots.showValues(graph);
     }
   };
   return plots;

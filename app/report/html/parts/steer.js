@@ -1,10 +1,10 @@
 // Requests of the page to a live run: pause, restart and knobs, as in the window. Shows their state.
 
 // Returns the unit in which to show a value of this size, and its number per unit of the knob.
-function readUnit(unit, most) {
-  if (unit === 'm' && most < 1e-3) return ['\u00b5m', 1e6];
-  if (unit === 'm' && most < 1) return ['mm', 1e3];
-  if (unit === 'N' && most < 1) return ['mN', 1e3];
+function readUnit(unit, largest) {
+  if (unit === 'm' && largest < 1e-3) return ['\u00b5m', 1e6];
+  if (unit === 'm' && largest < 1) return ['mm', 1e3];
+  if (unit === 'N' && largest < 1) return ['mN', 1e3];
   return [unit, 1];
 }
 
@@ -52,12 +52,12 @@ function makeSteer() {
     };
     const placeOfValue = one => Math.round(kPlaces * (wide ? Math.log(one / knob.least) / Math.log(knob.most / knob.least)
                                                             : (one - knob.least) / (knob.most - knob.least)));
-    const tell = one => { value.textContent = +(one * size).toPrecision(4) + (unit ? ' ' + unit : ''); };
+    const showValue = one => { value.textContent = +(one * size).toPrecision(4) + (unit ? ' ' + unit : ''); };
     // One request at a time: the newest value waits for the answer to the previous request.
     let [wish, asking] = [null, false];
     async function turn(one) {
       wish = one;
-      tell(one);
+      showValue(one);
       if (asking) return;
       asking = true;
       while (wish !== null) {
@@ -72,7 +72,7 @@ function makeSteer() {
     return {show: (one, off) => {
       [slider.disabled, reset.disabled] = [off, off];
       if (asking) return;
-      tell(one);
+      showValue(one);
       slider.value = placeOfValue(one);
     }};
   }

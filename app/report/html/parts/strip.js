@@ -20,18 +20,18 @@ function makeStrip(box, player) {
       pen.fillRect(at(begin), 0, Math.max(1, at(end) - at(begin)), height);
     }
     // A force lasts until the next tick, which may be several columns later.
-    const most = new Float32Array(width);
+    const maxima = new Float32Array(width);
     for (let i = 0; i < arm.t.length; ++i) {
       const next = i + 1 < arm.t.length ? arm.t[i + 1] : span.end;
       const last = Math.min(width - 1, Math.floor(at(next)));
       for (let x = Math.max(0, Math.floor(at(arm.t[i]))); x <= last; ++x) {
-        if (arm.force[i] > most[x]) most[x] = arm.force[i];
+        if (arm.force[i] > maxima[x]) maxima[x] = arm.force[i];
       }
     }
     for (let x = 0; x < width; ++x) {
-      if (!(most[x] > 0)) continue;
-      pen.fillStyle = 'rgb(' + forceColour(most[x]).map(one => Math.round(255 * one)).join(',') + ')';
-      const high = most[x] / forceScale * (height - 6);
+      if (!(maxima[x] > 0)) continue;
+      pen.fillStyle = 'rgb(' + forceColour(maxima[x]).map(one => Math.round(255 * one)).join(',') + ')';
+      const high = maxima[x] / forceScale * (height - 6);
       pen.fillRect(x, height - high, 1, high);
     }
     for (const mark of arm.marks) {

@@ -23,8 +23,8 @@
 namespace thimble::scene {
 namespace {
 
-// The bounds below are no limits of any arm: they are far outside of what a desk-top arm can be
-// [DEVICES 3], so that a slipped decimal point or a value in mm is caught at its line.
+// The bounds below are not limits of any arm. They are far beyond what a desk-top arm can have
+// [DEVICES 3], so that a misplaced decimal point or a value in mm is reported with its line.
 constexpr std::int64_t kCountsMax = 1'000'000;
 
 driver::SerialArm read_geometry(YamlMap map) {
@@ -36,13 +36,13 @@ driver::SerialArm read_geometry(YamlMap map) {
   return geometry;
 }
 
-/// Reads what the motors carry for long: both keys or none.
+/// Reads the thermal limits of the motors: both keys or none.
 driver::HeatSettings read_heat(YamlMap& map) {
   driver::HeatSettings heat;
   const bool current = map.has("continuous_current"), time = map.has("thermal_time_constant");
   if (!current && !time) return heat;
-  if (!current) map.refuse("thermal_time_constant", "expected continuous_current beside it");
-  if (!time) map.refuse("continuous_current", "expected thermal_time_constant beside it");
+  if (!current) map.refuse("thermal_time_constant", "needs continuous_current in the same section");
+  if (!time) map.refuse("continuous_current", "needs thermal_time_constant in the same section");
   if (!current || !time) return heat;
   const Eigen::Vector3d amperes = map.require_vector3("continuous_current", "A", 0.01, 32);
   const Eigen::Vector3d seconds = map.require_vector3("thermal_time_constant", "s", 1, 1e5);
@@ -53,7 +53,8 @@ driver::HeatSettings read_heat(YamlMap& map) {
   return heat;
 }
 
-/// Reads what may differ between two arms of a build whose geometry, drives and encoders are code.
+/// Reads the values that may differ between two arms of a built-in shape, whose geometry, drives
+/// and encoders are code.
 void read_built_in_joints(YamlMap map, driver::ArmModel& model, driver::HeatSettings& heat) {
   Eigen::Vector3d torque;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -95,9 +96,9 @@ driver::Gimbal read_gimbal(YamlMap map) {
   const auto axes = map.optional_choices("axes", {0, 1, 0}, {"x", "y", "z"});
   if (axes.size() == 3) {
     if (axes[0] == axes[1] || axes[1] == axes[2]) {
-      map.refuse("axes", "expected no two neighbours to be the same axis");
+      map.refuse("axes", "expected different axes for neighbours");
     }
-  } else if (!axes.empty()) {  // what cannot be read at all has been told
+  } else if (!axes.empty()) {  // an unreadable value is already reported
     map.refuse("axes", "expected three axes, from the link to the stylus");
   }
   for (std::size_t i = 0; i < 3; ++i) {
@@ -110,49 +111,48 @@ driver::Gimbal read_gimbal(YamlMap map) {
   return gimbal;
 }
 
-std::optional<double> number_if_there(YamlMap& map, std::string_view key, std::string_view unit,
-                                      double least, double most) {
+std::optional<double> optional_value(YamlMap& map, std::string_view key, std::string_view unit,
+                                     double min, double max) {
   if (!map.has(key)) return {};
-  return map.require_number(key, unit, least, most);
+  return map.require_number(key, unit, min, max);
 }
 
-/// Mean power on the hand where a file names none, W, and the time of that mean, s [chosen: 1 W
-/// moves a pinched grip of 3 N s/m (PHYSICS 0) at 0.6 m/s for ever; within 2 s it is the work of 5
-/// N over 0.4 m, so that no constant force within an arm's workspace is lowered].
-constexpr double kPowerMost = 1, kPowerTime = 2;
+/// Default of the mean power on the hand, W, and of the averaging time, s [chosen: 1 W moves a
+/// pinch grip of 3 N s/m (PHYSICS 0) at 0.6 m/s permanently; within 2 s it is the work of 5 N over
+/// 0.4 m, so that no constant force within an arm's workspace is reduced].
+constexpr double kPowerMax = 1, kPowerTime = 2;
 
 driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
   driver::GateLimits limits;
   limits.force_max = map.require_number("force_max", "N", 0.01, 100);
   limits.speed_max = map.require_number("speed_max", "m/s", 0.01, 20);
-  limits.rise_max = map.require_number("rise_max", "N/s", 1, driver::GateLimits::kRiseMost);
-  limits.soft_start =
-      map.require_number("soft_start", "s", driver::GateLimits::kSoftStartLeast, 10);
+  limits.rise_max = map.require_number("rise_max", "N/s", 1, driver::GateLimits::kRiseMax);
+  limits.soft_start = map.require_number("soft_start", "s", driver::GateLimits::kSoftStartMin, 10);
   limits.stall_ns = to_ns(map.require_number("stall", "s", 0.001, 10));
-  limits.watchdog_ns = to_ns(
-      map.require_number("watchdog", "s", 0.001, 1e-9 * driver::GateLimits::kWatchdogMost_ns));
+  limits.watchdog_ns =
+      to_ns(map.require_number("watchdog", "s", 0.001, 1e-9 * driver::GateLimits::kWatchdogMax_ns));
   limits.reopen = map.optional_number("reopen", limits.reopen, "s", 0.001, 10);
-  limits.power_max = map.optional_number("power_max", kPowerMost, "W", 0.01, 20);
+  limits.power_max = map.optional_number("power_max", kPowerMax, "W", 0.01, 20);
   limits.power_time = map.optional_number("power_time", kPowerTime, "s", 0.1, 10);
   if (limits.force_max > arm.declared.force) {
     map.reject("force_max",
-               fmt::format("expected at most what the arm declares, {:g} N, found {:g}",
+               fmt::format("expected at most the declared force of the arm, {:g} N, found {:g}",
                            arm.declared.force, limits.force_max));
   }
-  // A mistake in either has been told, and left its least value.
+  // If one of them is invalid, it is already reported and has its smallest value.
   if (limits.stall_ns >= limits.watchdog_ns && limits.watchdog_ns > to_ns(0.001)) {
-    map.reject("stall", "expected a shorter time than that of watchdog");
+    map.reject("stall", "expected a shorter time than watchdog");
   }
   EnergyChoice& energy = arm.energy;
   if (map.has("energy")) {
     energy.stage =
         static_cast<driver::EnergyStage>(map.require_choice("energy", kEnergyStageNames));
   }
-  arm.hold_unchanged = number_if_there(map, "hold_unchanged", "s", 0.05, 600);
-  energy.mass = number_if_there(map, "tip_mass", "kg", 1e-3, 10);
-  energy.allowance = number_if_there(map, "energy_allowance", "J", 0, 1);
-  energy.reservoir = number_if_there(map, "energy_reservoir", "J", 1e-6, 10);
-  energy.slope = number_if_there(map, "energy_slope", "N/m", 0.1, 1e6);
+  arm.hold_unchanged = optional_value(map, "hold_unchanged", "s", 0.05, 600);
+  energy.mass = optional_value(map, "tip_mass", "kg", 1e-3, 10);
+  energy.allowance = optional_value(map, "energy_allowance", "J", 0, 1);
+  energy.reservoir = optional_value(map, "energy_reservoir", "J", 1e-6, 10);
+  energy.slope = optional_value(map, "energy_slope", "N/m", 0.1, 1e6);
   for (const char* key :
        {"force_max", "speed_max", "rise_max", "soft_start", "stall", "watchdog", "reopen", "energy",
         "power_max", "power_time", "tip_mass", "energy_allowance", "energy_reservoir",
@@ -167,7 +167,7 @@ WorkspaceBox read_workspace(YamlMap map) {
   const Eigen::Vector3d min_W = map.require_vector3("min", "m", -2, 2);
   const Eigen::Vector3d max_W = map.require_vector3("max", "m", -2, 2);
   if (!(min_W.array() <= max_W.array()).all()) {
-    map.reject("max", "expected no coordinate below that of min");
+    map.reject("max", "expected no coordinate smaller than that of min");
   }
   map.finish();
   return {min_W, max_W};
@@ -186,26 +186,27 @@ DeclaredLimits read_declared(YamlMap map) {
   return declared;
 }
 
-/// Returns the most that the motors carry over the workspace, N.
-double most_carried(const ArmFile& arm) {
+/// Returns the largest compensation force of the motors over the workspace, N.
+double max_carried(const ArmFile& arm) {
   if (arm.carried_moments.isZero(0)) return arm.carried_weight;
-  constexpr int kPlaces = 5;  // along each side of the workspace
+  constexpr int kPlaces = 5;  // number of points along each side of the workspace
   const LinkGravity links = link_gravity(arm);
   const Eigen::Vector3d side = (arm.workspace.max_W - arm.workspace.min_W) / (kPlaces - 1);
-  double most = 0;
+  double max_force = 0;
   for (int i = 0; i < kPlaces * kPlaces * kPlaces; ++i) {
     const Eigen::Vector3d at(i % kPlaces, i / kPlaces % kPlaces, i / (kPlaces * kPlaces));
     const Eigen::Vector3d p_WT = arm.workspace.min_W + side.cwiseProduct(at);
     const auto q = links.arm.inverse(arm.R_WB.transpose() * (p_WT - arm.p_WB));
     if (!q) continue;
-    most = std::max(most, (links.carried(*q) + Eigen::Vector3d(0, 0, arm.carried_weight)).norm());
+    max_force =
+        std::max(max_force, (links.carried(*q) + Eigen::Vector3d(0, 0, arm.carried_weight)).norm());
   }
-  return most;
+  return max_force;
 }
 
-/// Reads what of the arm's weight its motors carry: at most a third of the force that the gate lets
-/// through [chosen: so that most of it is left for the scene]. Of links that weigh more in some
-/// poses that third is given there.
+/// Reads how much of the weight of the arm its motors carry: at most a third of `force_max` of the
+/// gate [chosen: so that most of the force is left for the scene]. If links need more in some
+/// poses, they get that third there.
 void read_carried(YamlMap map, ArmFile& arm) {
   const double third = arm.limits.force_max / 3;
   arm.carried_weight = map.optional_number("weight", 0, "N", 0, 10);
@@ -219,17 +220,18 @@ void read_carried(YamlMap map, ArmFile& arm) {
   }
   if (!arm.carried_moments.isZero(0)) {
     LinkGravity links = link_gravity(arm);
-    links.most = HUGE_VAL;
+    links.max_force = HUGE_VAL;
     const auto q = links.arm.inverse(arm.R_WB.transpose() * (arm.workspace.middle() - arm.p_WB));
     const double weight = q ? links.carried(*q).norm() + arm.carried_weight : 0;
     if (weight > third) {
-      map.reject("", fmt::format("expected at most a third of the gate's force_max, {:.3g} N, to "
-                                 "be carried in the middle of the workspace, and it is {:.3g} N",
-                                 third, weight));
+      map.reject("",
+                 fmt::format("expected a compensation of at most a third of the gate's "
+                             "force_max, {:.3g} N, in the middle of the workspace, found {:.3g} N",
+                             third, weight));
     }
   }
   map.finish();
-  arm.carried_most = most_carried(arm);
+  arm.max_carried_force = max_carried(arm);
 }
 
 std::vector<driver::BoardKind> read_boards(YamlMap& root, const driver::ArmRow& row) {
@@ -240,25 +242,25 @@ std::vector<driver::BoardKind> read_boards(YamlMap& root, const driver::ArmRow& 
                              {driver::kBoardNames.begin(), driver::kBoardNames.end()})) {
     const auto board = static_cast<driver::BoardKind>(index);
     if (std::find(fitting.begin(), fitting.end(), board) == fitting.end()) {
-      root.reject("board", "the board " + std::string(name(board)) + " does not speak " +
+      root.reject("board", "the board " + std::string(name(board)) + " does not use the protocol " +
                                std::string(row.protocol));
     }
     boards.push_back(board);
   }
-  if (boards.empty()) boards.push_back(fitting.front());  // a mistake that is told
+  if (boards.empty()) boards.push_back(fitting.front());  // the mistake is already reported
   return boards;
 }
 
-/// Returns the build of the arms that tell where their tip is.
-const driver::ShapeRow& told_shape() {
+/// Returns the shape of arms whose vendor software reports the position of the tip.
+const driver::ShapeRow& vendor_pose_shape() {
   const auto shapes = driver::arm_shapes();
   return *std::find_if(shapes.begin(), shapes.end(), [](const driver::ShapeRow& row) {
     return row.built_in != nullptr &&
-           std::holds_alternative<driver::ToldArm>(row.built_in().geometry);
+           std::holds_alternative<driver::VendorPoseArm>(row.built_in().geometry);
   });
 }
 
-/// Reads what the arm speaks and how it is built, by the names of the table of arms.
+/// Reads protocol and shape of the arm, by their names in the table of arms.
 void read_kind(YamlMap& root, ArmFile& arm) {
   std::vector<std::string_view> protocols, shapes;
   for (const driver::ArmRow& row : driver::arm_table()) protocols.push_back(row.protocol);
@@ -267,8 +269,8 @@ void read_kind(YamlMap& root, ArmFile& arm) {
   arm.protocol = row.kind;
   arm.boards = read_boards(root, row);
   if (row.has_own_link()) {
-    // Its vendor's software knows its joints and motors; a file that names them is told so.
-    arm.model = told_shape().built_in();
+    // The software of its vendor knows joints and motors. A file that contains them is rejected.
+    arm.model = vendor_pose_shape().built_in();
     return;
   }
   const driver::ShapeRow& shape = driver::arm_shapes()[root.optional_choice("shape", 0, shapes)];
@@ -283,15 +285,15 @@ void read_kind(YamlMap& root, ArmFile& arm) {
     read_joints(root.require_map("joints"), arm.model, arm.heat);
   }
   if ((row.kind == driver::ArmKind::kFalcon) != arm.is<driver::DeltaArm>()) {
-    root.reject("protocol", "expected falcon_packet with the shape falcon, and only with it");
+    root.reject("protocol", "expected falcon_packet with shape: falcon, and only with it");
   }
-  if (arm.is<driver::ToldArm>()) {
-    root.reject("shape", "the shape told is that of arms behind a vendor's service or library");
+  if (arm.is<driver::VendorPoseArm>()) {
+    root.reject("shape", "told is only for arms that a service or library of their vendor drives");
   }
   if (!root.has("gimbal")) return;
   if (!row.carries_gimbal) {
     root.reject("gimbal",
-                "the reports of " + std::string(row.protocol) + " carry no encoders of a gimbal");
+                "the reports of " + std::string(row.protocol) + " contain no gimbal encoders");
   }
   arm.model.gimbal = read_gimbal(root.require_map("gimbal"));
 }
@@ -323,8 +325,9 @@ driver::Result<ArmFile> read_arm(YamlFile& yaml) {
     read_carried(root.require_map("gravity_compensation"), arm);
   }
   arm.velocity_corner_frequency = root.require_number("velocity_corner_frequency", "Hz", 0, 1e5);
-  if (arm.is<driver::ToldArm>() && root.has("simulation")) {
-    root.refuse("simulation", "an arm behind a vendor's service or library cannot be simulated");
+  if (arm.is<driver::VendorPoseArm>() && root.has("simulation")) {
+    root.refuse("simulation",
+                "an arm that a service or library of its vendor drives cannot be simulated");
   }
   if (arm.is<driver::SerialArm>() || root.has("simulation")) {
     arm.simulated = read_simulation(root.require_map("simulation"), arm);

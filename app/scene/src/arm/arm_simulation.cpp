@@ -12,7 +12,7 @@
 namespace thimble::scene {
 namespace {
 
-/// Draws a point of the world to the box of the arm's workspace.
+/// Returns the point of the arm's workspace closest to a point in the world.
 Eigen::Vector3d in_workspace(const ArmFile& file, const Eigen::Vector3d& p_W) {
   return p_W.cwiseMax(file.workspace.min_W).cwiseMin(file.workspace.max_W);
 }
@@ -21,7 +21,7 @@ Eigen::Vector3d in_base(const ArmFile& file, const Eigen::Vector3d& p_W) {
   return file.R_WB.transpose() * (p_W - file.p_WB);
 }
 
-/// Returns the hand's path in the arm's base, given in the world.
+/// Converts the path of the hand from the world into the frame of the base.
 driver::Result<device_sim::HandPath> path_in_base(const HandRoute& hand_W, const ArmFile& file) {
   std::vector<device_sim::HandPath::Point> points;
   points.reserve(hand_W.size());
@@ -31,10 +31,10 @@ driver::Result<device_sim::HandPath> path_in_base(const HandRoute& hand_W, const
   return device_sim::HandPath::make(std::move(points));
 }
 
-/// Sets what the board of a file's arm speaks.
+/// Returns the simulation settings of an arm file, with protocol and model number of its board.
 device_sim::SimulatedArmSettings settings_of(const ArmFile& file) {
   device_sim::SimulatedArmSettings settings = file.simulated;
-  settings.firmware.speaks = file.protocol;
+  settings.firmware.protocol = file.protocol;
   settings.firmware.line_model = file.board_model;
   return settings;
 }
@@ -54,8 +54,8 @@ driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W) {
   for (const auto& [time, p_WH] : hand_W) {
     if (!file.workspace.holds(p_WH) || !joint_angles_at(file, p_WH)) {
       return driver::Error{
-          fmt::format("At {:.3f} s the hand would be at {} m, where the arm "
-                      "does not reach or may not work; move that waypoint or the object.",
+          fmt::format("At {:.3f} s the hand would be at {} m, which the arm does not reach "
+                      "within its workspace; move that waypoint or the object.",
                       time, place_text(p_WH, 3))};
     }
   }
@@ -65,16 +65,16 @@ driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W) {
 driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
     const ArmFile& file, const HandRoute& hand_W, const std::filesystem::path& firmware,
     std::uint64_t seed) {
-  if (file.is<driver::ToldArm>()) {
+  if (file.is<driver::VendorPoseArm>()) {
     return driver::Error{"The arm " + file.name +
                          " is driven by its vendor's software, so it cannot be simulated. Start "
-                         "that and name the arm by --device (thimble devices), or name another "
-                         "arm by --arm."};
+                         "that software and name the arm with --device (thimble devices), or name "
+                         "another arm with --arm."};
   }
   if (!file.can_simulate) {
     return driver::Error{"The arm file " + file.name +
                          " has no section 'simulation', so the arm cannot be simulated. Add one "
-                         "(app/arms/vintage_phantom.yaml shows it), or plug the arm in."};
+                         "(see app/arms/vintage_phantom.yaml), or plug the arm in."};
   }
   const auto path = path_in_base(hand_W, file);
   if (!path) return driver::Error{file.name + ": " + path.error().message};
@@ -140,7 +140,7 @@ void ArmSimulation::hold(bool still) noexcept {
 }
 
 void ArmSimulation::settle(std::int64_t now_ns) noexcept {
-  constexpr std::int64_t kFrames_ns = 2'000'000;  // a frame to the converter, one on its line
+  constexpr std::int64_t kFrames_ns = 2'000'000;  // one frame to the converter, and one on its line
   if (falcon_) {
     falcon_->advance_to(now_ns + kFrames_ns);
   } else {

@@ -69,8 +69,8 @@ driver::Result<void> save_calibration(const std::string& name, const Calibration
   stream.close();
   if (stream) fs::rename(fresh, file, trouble);
   if (!stream || trouble) {
-    return driver::Error{"The calibration cannot be written to " + file.string() +
-                         ". Check that the folder may be written to."};
+    return driver::Error{"Cannot write the calibration to " + file.string() +
+                         ". Make the folder writable."};
   }
   return {};
 }
@@ -87,8 +87,8 @@ driver::Result<Calibration> find_calibration(const ArmFile& file, driver::ArmKin
                                              const driver::ArmReading& home,
                                              const std::array<driver::ArmReading, 3>& moved) {
   constexpr double kMoveMin = 0.020;  // m
-  // Each of the eight sets of signs gives the three movements a direction; the right one gives them
-  // the directions that the user was asked for.
+  // With each of the eight sets of signs, the three motions have certain directions. The correct
+  // set gives the directions that the user was asked for.
   double best = -4, second = -4;
   bool moved_enough = false;
   Calibration found;
@@ -99,7 +99,7 @@ driver::Result<Calibration> find_calibration(const ArmFile& file, driver::ArmKin
       const int flip = (set >> i) & 1U ? -1 : 1;
       tried.encoder_sign[i] = flip * in_file;
       tried.motor_sign[i] = flip * (file.model.drives[i].sign < 0 ? -1 : 1);
-      // In the home pose the joint angle is the file's, whichever way the encoder counts.
+      // At the home pose the joint angle is that of the file, with either sign of the encoder.
       tried.home_counts[i] =
           static_cast<std::int32_t>(flip * file.model.encoders[i].home_counts - home.counts[i]);
     }
@@ -128,11 +128,13 @@ driver::Result<Calibration> find_calibration(const ArmFile& file, driver::ArmKin
   if (!moved_enough) {
     return driver::Error{"The grip moved too little. Move it by 5 cm or more each time."};
   }
-  // Three movements within 37 degrees of what was asked for, and clearly better than any other set.
+  // The three motions are within 37 degrees of the requested ones, and fit clearly better than with
+  // any other set.
   if (best < 2.4 || best - second < 0.5) {
     return driver::Error{
-        "The movements do not tell which way the encoders count. Begin in the home pose, and move "
-        "the grip straight towards you, to the right and up, back home in between."};
+        "The motions do not determine the signs of the encoders. Start at the home pose and move "
+        "the grip straight towards you, to the right and up, and back to the home pose in "
+        "between."};
   }
   return found;
 }

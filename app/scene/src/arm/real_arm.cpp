@@ -33,11 +33,12 @@ using driver::Error;
 using driver::FoundArm;
 using driver::Result;
 
-/// Asks a board on USB serial who it is, with zero currents.
+/// Requests a report of a board on USB serial, with zero currents, and checks its model number.
 Result<void> check_board(driver::Transport& wire, const ArmFile& file, const FoundArm& arm,
                          driver::Clock& clock) {
   constexpr int kAttempts = 20;
-  constexpr std::int64_t kWait_ns = 100'000'000;  // as often as the published library asks [S]
+  constexpr std::int64_t kWait_ns =
+      100'000'000;  // period of the requests of the published library [S]
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     std::array<std::byte, hfab::kLineCapacity> message{};
     const std::size_t size = hfab::encode_host_line({}, message);
@@ -48,31 +49,33 @@ Result<void> check_board(driver::Transport& wire, const ArmFile& file, const Fou
     const auto line = hfab::decode_arm_line(std::span<const std::byte>(buffer).first(read.size));
     if (!line) continue;
     if (file.board_model == 0 || line->model == file.board_model) return {};
-    return Error{arm.node + " answers as model " + std::to_string(line->model) +
+    return Error{arm.node + " reports model " + std::to_string(line->model) +
                  ", but the arm file " + file.name + " is for model " +
                  std::to_string(file.board_model) + ". Choose the right file with --arm."};
   }
   return Error{
       arm.node +
-      " does not answer as a Haptikfabriken arm. Check its power; if it is another Teensy, "
+      " does not answer as a Haptikfabriken arm. Check its power. If it is another Teensy, "
       "choose your arm by name (thimble devices)."};
 }
 
 Result<void> home(driver::SerialLine& line) {
-  constexpr int kAsksMax = 60'000;  // a minute at a millisecond each, much longer with a slow hand
+  constexpr int kRequestsMax =
+      60'000;  // a minute at one request per millisecond; a slow hand may take longer
   std::uint8_t homed = 0;
-  bool told = false;
+  bool prompted = false;
   int silent = 0;
-  for (int i = 0; i < kAsksMax; ++i) {
-    if (stop_asked()) return Error{"Ended before the Falcon was homed; it got no force."};
+  for (int i = 0; i < kRequestsMax; ++i) {
+    if (stop_asked()) return Error{"Stopped before the Falcon was homed; it got no force."};
     const falcon::HomingState state = falcon::home_once(line, homed);
     silent = state.answered ? 0 : silent + 1;
-    if (silent > 20) return Error{"The Falcon stopped answering while it was homed."};
+    if (silent > 20)
+      return Error{"The Falcon stopped answering during homing. Check its power and cable."};
     if (state.done()) return {};
     homed = state.homed;
-    if (!told && state.answered) {
+    if (!prompted && state.answered) {
       terminal().info("Pull the Falcon's grip all the way out, then push it in.");
-      told = true;
+      prompted = true;
     }
   }
   return Error{"The Falcon was not homed. Pull its grip all the way out, push it in, and retry."};
@@ -88,7 +91,7 @@ Result<std::unique_ptr<driver::Transport>> open_falcon(const FoundArm& arm,
   return (*line)->into_transport(falcon::kPacketFraming, clock);
 }
 
-/// Says why a board is never opened.
+/// Returns why a board is never opened.
 Error cannot_drive(const FoundArm& arm) {
   if (arm.certainty == Certainty::kUnsupported) {
     return Error{"The protocol of the " + arm.arm + " (" + arm.name() +
@@ -96,11 +99,11 @@ Error cannot_drive(const FoundArm& arm) {
   }
   return Error{
       "The board " + arm.name() + " (" + arm.arm +
-      ") has reports of a form that no arm has, or no driver, so Thimble does not open it. "
+      ") has a report format that no known arm uses, or no driver, so Thimble does not open it. "
       "See `thimble doctor`."};
 }
 
-/// Opens the wire to an arm and brings the arm up. Precondition: `check_fits`.
+/// Opens the connection to an arm and initialises the arm. Precondition: `check_fits`.
 Result<std::unique_ptr<driver::Transport>> open_wire(const FoundArm& arm, const ArmFile& file,
                                                      const std::filesystem::path& firmware,
                                                      driver::Clock& clock) {
@@ -155,25 +158,24 @@ Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_
     found = arm;
   }
   if (several) {
-    return Error{fmt::format(
-        "Several arms answer to '{}'. There is: {}. Name one with --device NAME.", wanted, names)};
+    return Error{
+        fmt::format("'{}' fits several arms: {}. Name one with --device NAME.", wanted, names)};
   }
   if (!found && !by_itself) {
     return Error{"No arm is called '" + wanted + "'. " +
-                 (names.empty() ? "None is plugged in that Thimble can drive."
-                                : "There is: " + names + ".") +
+                 (names.empty() ? "No arm that Thimble can drive is plugged in."
+                                : "Plugged in: " + names + ".") +
                  " See `thimble devices`."};
   }
   if (found && !found->accessible) {
     if (found->certainty == Certainty::kUnknown) {
       return Error{"No access to " + found->name() + " (" + found->arm +
-                   "): the installed rule is for arms alone. `thimble doctor` prints the line to "
-                   "add for this board."};
+                   "): the installed udev rule covers known arms only. `thimble doctor` prints the "
+                   "line to add for this board."};
     }
     if (found->kind == ArmKind::kHd || found->kind == ArmKind::kDhd) {
-      return Error{
-          "No access to " + found->arm + " " + found->name() + " (" + found->node +
-          "), by which its vendor's library reaches it: `thimble doctor` says what to do."};
+      return Error{"No access to " + found->arm + " " + found->name() + " (" + found->node +
+                   "), which the library of its vendor needs: `thimble doctor` prints what to do."};
     }
     return Error{"No access to " + found->arm + " " + found->name() +
                  ": install udev/70-thimble.rules and plug it in again (see `thimble doctor`)."};
@@ -182,32 +184,31 @@ Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_
 }
 
 std::string boards_left_out(const std::vector<FoundArm>& plugged_in) {
-  std::string boards, stand_ins;
+  std::string boards, thimble_services;
   for (const FoundArm& arm : plugged_in) {
     if (arm.certainty != Certainty::kUnknown) continue;
     if (arm.board == BoardKind::kHaplyService) {
-      stand_ins.append(stand_ins.empty() ? "" : ", ").append(arm.name());
+      thimble_services.append(thimble_services.empty() ? "" : ", ").append(arm.name());
       continue;
     }
     boards.append(boards.empty() ? "" : ", ").append(arm.name()).append(": ").append(arm.arm);
   }
   std::string sentences;
-  if (!stand_ins.empty()) {
+  if (!thimble_services.empty()) {
     sentences =
-        "Left out, because what answers there is `thimble exec --serve haply` and no "
-        "Inverse3: " +
-        stand_ins + ". Use it by --device NAME.";
+        "Ignored, because `thimble exec --serve haply` answers there and not an Inverse3: " +
+        thimble_services + ". Use it with --device NAME.";
   }
   if (boards.empty()) return sentences;
   return sentences + (sentences.empty() ? "" : " ") +
-         "Left out, because they may be anything: " + boards +
-         ". If one is your arm, use it by --device NAME with an arm file that names its board "
-         "(`thimble doctor` tells).";
+         "Ignored, because their kind is unknown: " + boards +
+         ". If one is your arm, use it with --device NAME and an arm file that names its board "
+         "(`thimble doctor` prints it).";
 }
 
 std::optional<FoundArm> find_again(const std::vector<FoundArm>& plugged_in, const FoundArm& lost) {
   for (const FoundArm& arm : plugged_in) {
-    // Another board with the same ids, or other firmware on the same one, is not the same arm.
+    // Another board with the same ids, or the same board with other firmware, is not the same arm.
     const bool same_kind = arm.vendor_id == lost.vendor_id && arm.product_id == lost.product_id &&
                            arm.board == lost.board && arm.product == lost.product &&
                            arm.serial == lost.serial;
@@ -224,10 +225,11 @@ Result<void> check_fits(const ArmFile& file, const FoundArm& arm) {
     boards.append(boards.empty() ? "" : ", ").append(name(board));
   }
   const std::string board(name(arm.board));
-  return Error{"The arm file " + file.name + " is for the board " + boards + ", but " + arm.name() +
-               " (" + arm.arm + ") is a " + board +
-               ". Choose its own with --arm FILE (app/arms has them); signs and currents of one "
-               "board are dangerous on another."};
+  return Error{
+      "The arm file " + file.name + " is for the board " + boards + ", but " + arm.name() + " (" +
+      arm.arm + ") is a " + board +
+      ". Choose the right file with --arm FILE (see app/arms); signs and currents of one board "
+      "are dangerous on another."};
 }
 
 Result<std::unique_ptr<driver::ArmLink>> open_link(const FoundArm& arm, const ArmFile& file,

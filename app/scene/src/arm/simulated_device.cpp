@@ -14,7 +14,7 @@ using Opened = driver::Result<std::unique_ptr<SimulatedDevice>>;
 
 Opened SimulatedDevice::open(const ArmFile& arm, const HandRoute& hand_W,
                              const SimulatedDeviceOptions& options) {
-  // Written so that NaN is refused.
+  // Written so that NaN is rejected.
   if (!(options.rate >= 10 && options.rate <= 1e5)) {
     return driver::Error{"rate: expected 10 to 100000 Hz, found " + std::to_string(options.rate) +
                          "."};
@@ -41,9 +41,9 @@ Opened SimulatedDevice::open(const std::filesystem::path& arm, const HandRoute& 
 
 driver::ServoEnd SimulatedDevice::run_loop(double seconds, driver::ForceLaw law,
                                            driver::TickSink sink) noexcept {
-  // Written so that NaN is no time at all; a loop of 0 ticks would never end.
+  // Written so that NaN counts as no time; with 0 ticks the loop would run without end.
   if (!(seconds > 0)) return driver::ServoEnd::kDone;
-  constexpr double kLongest = 1e9;  // s: what nanoseconds in 64 bits can count, and 30 years
+  constexpr double kLongest = 1e9;  // s; 30 years, within the range of 64-bit nanoseconds
   const double ticks =
       std::ceil(std::min(seconds, kLongest) * 1e9 / static_cast<double>(period_ns_));
   const std::atomic<bool> never{false};

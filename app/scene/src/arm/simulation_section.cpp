@@ -14,7 +14,7 @@
 namespace thimble::scene {
 namespace {
 
-// By which copper's resistance rises from 20 degrees Celsius on, 1/K [M IEC 60028].
+// Temperature coefficient of the resistance of copper at 20 degrees Celsius, 1/K [M IEC 60028].
 constexpr double kCopperResistance = 0.00393;
 
 std::array<std::uint8_t, 3> joints_of(YamlMap& map, std::string_view key) {
@@ -44,7 +44,7 @@ void read_board(YamlMap& map, device_sim::SimulatedArmSettings& settings) {
   settings.firmware.report_period_ns =
       to_ns(firmware.require_number("report_period", "s", 1e-5, 0.1));
   settings.firmware.watchdog_ns = to_ns(firmware.require_number("watchdog", "s", 1e-3, 10));
-  // The wire carries 16-bit mA [DEVICES 1].
+  // The protocol has 16-bit currents in mA [DEVICES 1].
   settings.firmware.current_range_mA = static_cast<std::int16_t>(
       std::lround(1000 * firmware.require_number("current_range", "A", 0.01, 32.767)));
   settings.firmware.missed_edges = firmware.optional_number("missed_edges", 0, "", 0, 1);
@@ -57,7 +57,7 @@ void read_board(YamlMap& map, device_sim::SimulatedArmSettings& settings) {
   wire.finish();
 }
 
-/// Reads how the simulated hand turns the stylus.
+/// Reads how the simulated hand rotates the stylus.
 device_sim::GimbalMotion read_gimbal_motion(YamlMap map) {
   constexpr double kRadians = std::numbers::pi / 180;
   device_sim::GimbalMotion motion;
@@ -69,25 +69,26 @@ device_sim::GimbalMotion read_gimbal_motion(YamlMap map) {
   return motion;
 }
 
-/// Reads how motors warm up. It is not what the driver believes of them (section joints).
+/// Reads how the motors heat up in the simulation. It is independent of the driver's model of their
+/// heat (section joints).
 device_sim::MotorHeatSettings read_motor_heat(YamlMap map) {
   device_sim::MotorHeatSettings heat;
-  heat.rise = map.require_number("rise", "K", 1, device_sim::MotorHeatSettings::kRiseMost);
+  heat.rise = map.require_number("rise", "K", 1, device_sim::MotorHeatSettings::kRiseMax);
   heat.continuous_current = map.require_vector3("continuous_current", "A", 0.001, 100);
   heat.time_constant = map.require_vector3("time_constant", "s", 0.1, 1e5);
   heat.resistance = map.optional_number("resistance", kCopperResistance, "1/K", 0, 0.1);
   heat.torque = map.optional_number("torque", 0, "1/K", -0.1, 0);
   heat.at_start =
-      map.optional_vector3("at_start", {0, 0, 0}, "K", 0, device_sim::MotorHeatSettings::kRiseMost);
+      map.optional_vector3("at_start", {0, 0, 0}, "K", 0, device_sim::MotorHeatSettings::kRiseMax);
   map.finish();
   return heat;
 }
 
-/// Reads what lies between motors and links. What does not fit together is told by the plant.
+/// Reads the parts between motors and links. The plant reports combinations that are not possible.
 device_sim::DriveTrainSettings read_drive_train(YamlMap map) {
   constexpr double kTurn = 2 * std::numbers::pi;
-  const auto amounts = [&map](std::string_view key, std::string_view unit, double most) {
-    return map.optional_vector3(key, {0, 0, 0}, unit, 0, most);
+  const auto amounts = [&map](std::string_view key, std::string_view unit, double max) {
+    return map.optional_vector3(key, {0, 0, 0}, unit, 0, max);
   };
   device_sim::DriveTrainSettings train;
   train.current_lag = map.optional_number("current_lag", 0, "s", 0, 0.1);
@@ -109,21 +110,21 @@ device_sim::DriveTrainSettings read_drive_train(YamlMap map) {
   if (map.has("heat")) train.heat = read_motor_heat(map.require_map("heat"));
   const bool wavy = !train.cogging.isZero(0) || !train.ripple.isZero(0);
   if (wavy && train.periods_per_turn == 0) {
-    map.reject("", "expected periods_per_turn beside cogging or ripple");
+    map.reject("", "cogging and ripple need periods_per_turn in the same section");
   }
   const bool masses = !train.inertia.isZero(0) || !train.damping.isZero(0) || !train.play.isZero(0);
   if (train.compliant() &&
       !((train.stiffness.array() > 0).all() && (train.inertia.array() > 0).all())) {
-    map.reject("stiffness", "expected each above zero, and each of inertia too");
+    map.reject("stiffness", "expected values above zero, and the same for inertia");
   }
   if (masses && !train.compliant()) {
-    map.reject("", "expected stiffness beside inertia, damping or play");
+    map.reject("", "inertia, damping and play need stiffness in the same section");
   }
   map.finish();
   return train;
 }
 
-/// Reads what hangs on the tip of a serial arm.
+/// Reads inertia and weight of the links of a serial arm.
 device_sim::LinkSettings read_links(YamlMap map, const ArmFile& arm) {
   const auto value = [&map](std::string_view key, std::string_view unit) {
     return map.optional_number(key, 0, unit, -1, 1);
@@ -154,7 +155,7 @@ device_sim::SimulatedArmSettings read_simulation(YamlMap map, const ArmFile& arm
     map.reject("encoders", "expected quantised with a gimbal: the reports have no room for both");
   }
   if (map.has("gimbal")) {
-    if (!arm.model.gimbal) map.reject("gimbal", "expected a section 'gimbal' of the arm beside it");
+    if (!arm.model.gimbal) map.reject("gimbal", "needs a section 'gimbal' of the arm itself");
     settings.gimbal = read_gimbal_motion(map.require_map("gimbal"));
   }
   if (map.has("wiring")) settings.firmware.wiring = read_wiring(map.require_map("wiring"));

@@ -13,14 +13,15 @@ namespace hfab = driver::hfab;
 
 driver::Result<int> ask_board_model(const driver::FoundArm& arm) {
   if (arm.certainty != driver::Certainty::kKnown) {
-    return driver::Error{"The board " + arm.name() + " calls itself \"" + arm.product +
-                         "\", which may be anything, so it is not asked which arm it is."};
+    return driver::Error{"The board " + arm.name() + " identifies itself as \"" + arm.product +
+                         "\", which may be any device, so it is not asked for its model."};
   }
   driver::WallClock clock;
   auto wire = driver::open_serial_transport(arm.node, hfab::kLineFraming, clock);
   if (!wire) return wire.error();
   constexpr int kAttempts = 20;
-  constexpr std::int64_t kWait_ns = 100'000'000;  // as often as the published library asks [S]
+  constexpr std::int64_t kWait_ns =
+      100'000'000;  // period of the requests of the published library [S]
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     std::array<std::byte, hfab::kLineCapacity> message{};
     const std::size_t size = hfab::encode_host_line({}, message);

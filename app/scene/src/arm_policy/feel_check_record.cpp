@@ -21,14 +21,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A checksum over bytes: FNV-1a, 64 bits [Fowler, Noll, Vo]. Not against malice.
+/// Non-cryptographic checksum of bytes: FNV-1a, 64 bits [Fowler, Noll, Vo].
 class Checksum {
  public:
   void add(std::string_view bytes) {
     for (const char byte : bytes) add_byte(static_cast<unsigned char>(byte));
-    add_byte(0);  // so that the end of one text is not the beginning of the next
+    add_byte(0);  // separates one text from the next
   }
-  /// Adds a number to a part in 10^9 of `unit`, so that another compiler gives the same sum.
+  /// Adds a number rounded to 10^-9 of `unit`, so that another compiler gives the same checksum.
   void add(double number, double unit) {
     add(std::isfinite(number) ? fmt::format("{:.0f}", std::round(number / (1e-9 * unit))) : "none");
   }
@@ -50,13 +50,13 @@ std::string checksum_of(const fs::path& file) {
   return sum.text();
 }
 
-/// Returns a checksum of what the driver makes of an arm file: the tip for some counts, the counts
-/// at home and the drive of each motor. It changes with the calibration, and with whatever of an
-/// arm's geometry and signs is code.
+/// Returns a checksum of the effect of an arm file in the driver: the tip for some counts, the
+/// counts at the home pose, and the drive of each motor. It changes with the calibration, and with
+/// geometry and signs that are code.
 std::string checksum_of_data(const ArmFile& file, driver::ArmKind kind) {
   Checksum sum;
   const auto arm = driver::make_arm(kind, file.model);
-  if (arm == nullptr) {  // its vendor's software knows the rest
+  if (arm == nullptr) {  // the rest is known only to the software of the vendor
     for (const double coordinate : file.p_WB) sum.add(coordinate, 1);
     for (const double entry : file.R_WB.reshaped()) sum.add(entry, 1);
     return sum.text();
@@ -80,15 +80,17 @@ std::string checksum_of_data(const ArmFile& file, driver::ArmKind kind) {
   return sum.text();
 }
 
-/// Returns what is known of an arm's firmware; empty if that is not enough to know it again.
+/// Returns the known properties of the firmware of an arm; empty if they are not enough to
+/// recognise it.
 std::string firmware_of(const driver::FoundArm& found, const fs::path& image) {
   if (!found.software.empty()) return std::string(name(found.board)) + ' ' + found.software;
-  if (found.release == 0) return {};  // tells no release
+  if (found.release == 0) return {};  // the board does not report a release
   std::string text = fmt::format("usb {:04x}:{:04x} device {:04x} \"", found.vendor_id,
                                  found.product_id, found.release) +
                      found.product + '"';
   if (found.kind != driver::ArmKind::kFalcon) return text;
-  // Whoever loaded a Falcon last decided what runs in it; its USB side is the converter's.
+  // The firmware of a Falcon is the image that was loaded last. Its USB properties are those of the
+  // converter.
   std::error_code missing;
   if (image.empty() || !fs::is_regular_file(image, missing)) return {};
   return text + " image " + checksum_of(image);
@@ -103,8 +105,8 @@ std::string record_of(const CheckedArm& arm) {
          "\nfirmware: " + arm.firmware + "\npassed: all\n";
 }
 
-/// Returns whether a file is this user's own and no other may write it.
-bool is_mine(const fs::path& file) {
+/// Returns whether a file belongs to this user and is not writable by others.
+bool is_owned_by_user(const fs::path& file) {
   struct stat status {};
   return ::stat(file.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
          status.st_uid == geteuid() && (status.st_mode & S_IWOTH) == 0;
@@ -127,13 +129,13 @@ fs::path feel_check_file(const std::string& name) {
 bool has_passed(const CheckedArm& arm) {
   if (arm.firmware.empty()) return false;
   const fs::path file = feel_check_file(arm.name);
-  return is_mine(file) && content_of(file) == record_of(arm);
+  return is_owned_by_user(file) && content_of(file) == record_of(arm);
 }
 
-driver::Result<void> keep_passed(const CheckedArm& arm) {
+driver::Result<void> save_feel_check(const CheckedArm& arm) {
   if (arm.firmware.empty()) {
     return driver::Error{
-        "The firmware in the arm is not known, so nothing is kept of this check. For a Falcon name "
+        "The firmware of the arm is not known, so this check is not recorded. For a Falcon, name "
         "the image with --firmware FILE, here and in each run."};
   }
   const fs::path file = feel_check_file(arm.name);
@@ -145,19 +147,19 @@ driver::Result<void> keep_passed(const CheckedArm& arm) {
   stream.close();
   if (stream) fs::rename(fresh, file, trouble);
   if (!stream || trouble) {
-    return driver::Error{"That the arm passed cannot be written to " + file.string() +
-                         ". Check that the folder may be written to."};
+    return driver::Error{"Cannot write the record of this check to " + file.string() +
+                         ". Make the folder writable."};
   }
   return {};
 }
 
-driver::Result<void> forget_passed(const std::string& name) {
+driver::Result<void> remove_feel_check(const std::string& name) {
   const fs::path file = feel_check_file(name);
   std::error_code trouble;
   fs::remove(file, trouble);
   if (!trouble) return {};
-  return driver::Error{"The record of an earlier check cannot be removed: " + file.string() +
-                       ". Remove it by hand: this arm has failed."};
+  return driver::Error{"Cannot remove the record of an earlier check: " + file.string() +
+                       ". Remove it yourself, because this arm has failed."};
 }
 
 }  // namespace thimble::scene

@@ -38,9 +38,9 @@ THIMBLE_EXPORT bool has_passed(const CheckedArm& arm);
 
 /// Saves atomically that an arm passed. Fails if its firmware is unknown or the file cannot be
 /// written.
-THIMBLE_EXPORT driver::Result<void> keep_passed(const CheckedArm& arm);
+THIMBLE_EXPORT driver::Result<void> save_feel_check(const CheckedArm& arm);
 
 /// Removes the record of an arm that failed. Fails if it exists and cannot be removed.
-THIMBLE_EXPORT driver::Result<void> forget_passed(const std::string& name);
+THIMBLE_EXPORT driver::Result<void> remove_feel_check(const std::string& name);
 
 }  // namespace thimble::scene

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A value of the gate and which way it is tighter.
+/// Value of the gate, and the direction in which it is tighter.
 struct LimitRule {
   const char* key;
   const char* unit;
@@ -21,14 +21,14 @@ struct LimitRule {
   void (*take)(ArmFile& to, const ArmFile& from);
 };
 
-/// Returns the allowance of a passivity stage as the gate would use it, J.
+/// Returns the allowance of the passivity stage that the gate would use, J.
 double allowance_of(const ArmFile& arm) {
   return arm.energy.allowance.value_or(kEnergyAllowance);
 }
 
-/// Returns how long a force is held while no encoder counts, as the driver would use it, s.
+/// Returns how long the driver would hold a force while no encoder counts, s.
 double hold_of(const ArmFile& arm) {
-  return arm.hold_unchanged.value_or(driver::MotionWatchSettings{}.hold_most);
+  return arm.hold_unchanged.value_or(driver::MotionWatchSettings{}.max_hold);
 }
 
 constexpr std::array<LimitRule, 11> kRules{{
@@ -63,7 +63,7 @@ int line_in(const ArmFile& arm, const char* key) {
   return found == arm.gate_lines.end() ? 0 : found->second;
 }
 
-/// Returns FILE:LINE, or FILE where a value is a default that no line names.
+/// Returns FILE:LINE, or FILE if the value is a default without a line.
 std::string place(const fs::path& file, int line) {
   return file.string() + (line > 0 ? ":" + std::to_string(line) : "");
 }
@@ -94,7 +94,7 @@ std::optional<std::string> tighten_energy(ArmFile& arm, const fs::path& arm_path
 
 std::vector<std::string> tighten(ArmFile& arm, const fs::path& arm_path, const ArmFile& other,
                                  const fs::path& other_path) {
-  std::vector<std::string> told;
+  std::vector<std::string> warnings;
   for (const LimitRule& rule : kRules) {
     const int line = line_in(other, rule.key);
     const double own = rule.get(arm);
@@ -103,28 +103,28 @@ std::vector<std::string> tighten(ArmFile& arm, const fs::path& arm_path, const A
     // Written so that NaN is ignored.
     const bool tighter = rule.less_is_tighter ? value < own : value > own;
     if (tighter) rule.take(arm, other);
-    told.push_back(place(other_path, line) +
-                   fmt::format(": {} {:g} {} is {} {:g} {} (", rule.key, value, rule.unit,
-                               tighter ? "kept: it is tighter than the arm's"
-                                       : "ignored: it is less strict than the arm's",
-                               own, rule.unit) +
-                   place(arm_path, line_in(arm, rule.key)) + ").");
+    warnings.push_back(place(other_path, line) +
+                       fmt::format(": {} {:g} {} is {} {:g} {} (", rule.key, value, rule.unit,
+                                   tighter ? "kept: it is tighter than the arm's"
+                                           : "ignored: it is less strict than the arm's",
+                                   own, rule.unit) +
+                       place(arm_path, line_in(arm, rule.key)) + ").");
   }
   if (const int line = line_in(other, "energy"); line > 0) {
     const auto energy = tighten_energy(arm, arm_path, other.energy.stage, other_path, line);
-    if (energy) told.push_back(*energy);
+    if (energy) warnings.push_back(*energy);
   }
   const auto ignore = [&](const char* key, const std::optional<double>& own,
                           const std::optional<double>& value) {
     if (!value || value == own) return;
-    told.push_back(place(other_path, line_in(other, key)) + ": " + key +
-                   " is ignored: of a real arm it stands in its installed arm file alone (" +
-                   place(arm_path, line_in(arm, key)) + ").");
+    warnings.push_back(place(other_path, line_in(other, key)) + ": " + key +
+                       " is ignored: a real arm uses only that of its installed arm file (" +
+                       place(arm_path, line_in(arm, key)) + ").");
   };
   ignore("tip_mass", arm.energy.mass, other.energy.mass);
   ignore("energy_reservoir", arm.energy.reservoir, other.energy.reservoir);
   ignore("energy_slope", arm.energy.slope, other.energy.slope);
-  return told;
+  return warnings;
 }
 
 const char* differing_section(const ArmFile& one, const ArmFile& other) {
@@ -151,7 +151,7 @@ const char* differing_section(const ArmFile& one, const ArmFile& other) {
     }
   }
   if (!same_joints()) return "joints";
-  // Files of before there were gimbals say nothing of one; then the installed file does.
+  // Older arm files do not mention a gimbal. In that case the installed file decides.
   if (other.model.gimbal && one.model.gimbal != other.model.gimbal) return "gimbal";
   if (one.R_WB != other.R_WB || one.p_WB != other.p_WB) return "base";
   if (one.workspace.min_W != other.workspace.min_W ||

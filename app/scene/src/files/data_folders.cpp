@@ -10,9 +10,9 @@
 
 #include "user_folders.h"
 
-// Where the files lie that came with the installed libraries; the CMake package gives it to each
-// program that is built with them (app/install/installed_files.cpp.in), for a static library cannot
-// know.
+// Returns the folder of the files that were installed with the libraries. The CMake package defines
+// it in each program that is built with them (app/install/installed_files.cpp.in), because a static
+// library does not know its own place.
 extern "C" __attribute__((weak)) const char* thimble_installed_files();
 
 namespace thimble::scene {
@@ -20,20 +20,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns whether a file is named as a shared library: module.so, libname.so.0.3.0.
+/// Returns whether a file name is that of a shared library: module.so, libname.so.0.3.0.
 bool is_shared_library(const fs::path& file) {
   const std::string name = file.filename();
   return name.ends_with(".so") || name.find(".so.") != std::string::npos;
 }
 
-/// Returns where the program lies, or the library, if this code is in one (Python's module, a
-/// shared build).
+/// Returns the path of the program, or of the shared library that contains this code (the Python
+/// module, a shared build).
 fs::path own_file() {
   std::error_code status;
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0 && info.dli_fname != nullptr) {
     fs::path file = fs::canonical(info.dli_fname, status);
-    // Of a program it is told as it was called: without a folder if the shell found it.
+    // For a program, dli_fname is the name of the call, without a folder if the shell searched
+    // $PATH.
     if (!status && is_shared_library(file)) return file;
   }
   return fs::read_symlink("/proc/self/exe", status);
@@ -61,13 +62,14 @@ fs::path own_folder() {
 }
 
 std::vector<fs::path> data_folders() {
-  // Never the working folder: what lies there may be a stranger's, and sets limits of arms.
+  // The working folder is never searched: its files may come from an untrusted source, and arm
+  // files set the limits of arms.
   std::vector<fs::path> folders{data_folder(), own_folder()};
   const char* named = std::getenv("XDG_DATA_DIRS");
   std::string_view rest = named != nullptr && *named != 0 ? named : "/usr/local/share:/usr/share";
   while (!rest.empty()) {
     const std::string_view one = rest.substr(0, rest.find(':'));
-    // A relative path is to be ignored [XDG Base Directory Specification].
+    // Relative paths are ignored [XDG Base Directory Specification].
     if (fs::path(one).is_absolute()) folders.push_back(fs::path(one) / "thimble");
     rest.remove_prefix(std::min(rest.size(), one.size() + 1));
   }

@@ -17,15 +17,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What takes the place of a scalar of the text.
+/// Replacement of a scalar of the text.
 struct Edit {
   std::size_t length = 0;
   std::string by;
 };
-/// By the place at which the scalar begins, so that what stands there once is replaced once.
+/// Edits by the position of the scalar, so that each scalar is replaced only once.
 using Edits = std::map<std::size_t, Edit>;
 
-/// Returns where a plain scalar stands in the text; empty if it is quoted, or something else.
+/// Returns the position of a plain scalar in the text; empty if the node is quoted or not a scalar.
 std::optional<std::size_t> place_of(const std::string& text, const YAML::Node& node) {
   if (!node || !node.IsScalar() || node.Mark().pos < 0) return {};
   const auto place = static_cast<std::size_t>(node.Mark().pos);
@@ -60,7 +60,7 @@ bool plain_path(const std::string& path) {
   });
 }
 
-/// Returns a path between quotes, as YAML has it.
+/// Returns a path as a YAML text in single quotes.
 std::string quoted(const std::string& path) {
   std::string text = "'";
   for (const char c : path) text += c == '\'' ? std::string("''") : std::string(1, c);
@@ -101,7 +101,7 @@ driver::Result<EditedScene> put_numbers(const std::string& text,
         edited.absent.push_back(i);
         continue;
       }
-      // Six digits are more than a hand sets, and rounding is not to be read.
+      // Six digits are finer than any setting by hand, and do not show rounding errors.
       const double scaled =
           numbers[i].scales ? node.as<double>() * numbers[i].value : numbers[i].value;
       edits[*place] = {node.Scalar().size(), fmt::format("{:.6g}", scaled)};

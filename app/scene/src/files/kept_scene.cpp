@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the item of a list that a word means: its number, its name, or a key that it alone has.
+/// Returns the item of a list that a word selects: by its number, by its name, or by a key that no
+/// other item has.
 std::optional<YAML::Node> item_of(const YAML::Node& list, const std::string& word) {
   std::size_t number = 0;
   const auto parsed = std::from_chars(word.data(), word.data() + word.size(), number);
@@ -33,13 +34,13 @@ std::optional<YAML::Node> item_of(const YAML::Node& list, const std::string& wor
     if (!item.IsMap()) continue;
     if (item["name"] && item["name"].IsScalar() && item["name"].Scalar() == word) return item;
     if (!item[word]) continue;
-    if (found) return {};  // two have it: which one is not told
+    if (found) return {};  // two items have the key, so it selects none
     found.emplace(item);
   }
   return found;
 }
 
-/// Tells what a place could go on with.
+/// Returns the words with which a place could continue.
 std::string known_in(const YAML::Node& node) {
   std::string names;
   const auto add = [&names](const std::string& name) {
@@ -92,7 +93,8 @@ driver::Result<void> change_scene(YAML::Node root, const SceneChange& one) {
   }
 }
 
-/// Lets a key name its file by its whole path, if it names one in `beside`; returns whether it did.
+/// Replaces the file name of a key by its absolute path, if the file exists in `beside`. Returns
+/// whether it did.
 bool make_absolute(YAML::Node map, const char* key, const fs::path& beside) {
   if (!map.IsMap() || !map[key] || !map[key].IsScalar()) return false;
   const fs::path named = map[key].Scalar();
@@ -115,12 +117,12 @@ driver::Result<fs::path> write_scene(const std::string& text, const std::string&
     stream.close();
     if (!stream && errno == ENAMETOOLONG) {
       return driver::Error{
-          "The name of the scene is too long for a file; shorten it to 200 bytes."};
+          "The name of the scene is too long for a file name; shorten it to 200 bytes."};
     }
     if (!stream) {
       return driver::Error{into.string() +
-                           ": the scene cannot be written there; make the folder "
-                           "writable, or set XDG_STATE_HOME to another."};
+                           ": cannot write the scene there; make the folder writable, or set "
+                           "XDG_STATE_HOME to another one."};
     }
   }
   fs::rename(beside, file, failed);
@@ -160,7 +162,7 @@ driver::Result<fs::path> keep_scene(const std::string& text,
     const std::string name = root["name"] ? root["name"].as<std::string>("scene") : "scene";
     return write_scene(rewritten ? YAML::Dump(root) + "\n" : text, name, into);
   } catch (const YAML::Exception& problem) {
-    return driver::Error{std::string("The scene's text cannot be changed: ") + problem.what() +
+    return driver::Error{std::string("Cannot change the text of the scene: ") + problem.what() +
                          "."};
   }
 }

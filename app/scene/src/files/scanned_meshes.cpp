@@ -29,7 +29,7 @@ bool is_there(const fs::path& path) {
   return fs::is_regular_file(path, status);
 }
 
-/// Runs tar on an archive, silently; returns whether it ended well.
+/// Runs tar on an archive without output. Returns whether it succeeded.
 bool untar(const fs::path& archive, const fs::path& folder) {
   posix_spawn_file_actions_t actions;
   if (posix_spawn_file_actions_init(&actions) != 0) return false;
@@ -52,27 +52,28 @@ bool untar(const fs::path& archive, const fs::path& folder) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-/// Unpacks the archive's meshes as `unpacked`, whole or not at all: beside it first, then renamed.
+/// Unpacks the meshes of the archive to `unpacked`, completely or not at all: into a folder next to
+/// it first, which is then renamed.
 driver::Result<void> unpack(const fs::path& archive, const fs::path& unpacked) {
   std::error_code failed;
   fs::create_directories(unpacked.parent_path(), failed);
   std::string work = unpacked.string() + ".XXXXXX";
   if (failed || mkdtemp(work.data()) == nullptr) {
     return driver::Error{fmt::format(
-        "The scanned meshes cannot be unpacked to {}: {}. Set XDG_CACHE_HOME to a folder that you "
-        "may write to.",
+        "Cannot unpack the scanned meshes to {}: {}. Set XDG_CACHE_HOME to a writable folder.",
         unpacked.string(), failed ? failed.message() : std::strerror(errno))};
   }
   const bool untarred = untar(archive, work);
   if (untarred) fs::rename(fs::path(work) / kInArchive, unpacked, failed);
   std::error_code ignored;
   fs::remove_all(work, ignored);
-  // Another run may have unpacked them meanwhile.
+  // Another run may have unpacked them at the same time.
   if ((untarred && !failed) || fs::is_directory(unpacked, ignored)) return {};
-  return driver::Error{fmt::format(
-      "The scanned meshes in {} cannot be unpacked to {}. Look whether the disk is full and tar is "
-      "there, or unpack {} of it yourself and set THIMBLE_MESHES to that folder.",
-      archive.string(), unpacked.string(), kInArchive)};
+  return driver::Error{
+      fmt::format("Cannot unpack the scanned meshes in {} to {}. Check that the disk is not full "
+                  "and that tar is "
+                  "installed, or unpack {} yourself and set THIMBLE_MESHES to that folder.",
+                  archive.string(), unpacked.string(), kInArchive)};
 }
 
 }  // namespace
@@ -112,7 +113,7 @@ driver::Result<fs::path> find_scan(const std::string& name, const ScanPlaces& pl
   return driver::Error{fmt::format(
       "{} is a scan of Debian's package libcgal-demo, and is not in {}. Install it (sudo apt "
       "install libcgal-demo), run app/fetch_meshes.sh in the sources, or set THIMBLE_MESHES to a "
-      "folder that has it. `thimble run water_balloon` touches a mesh that came with Thimble.",
+      "folder with it. `thimble run water_balloon` uses a mesh that comes with Thimble.",
       name, looked)};
 }
 

@@ -24,7 +24,7 @@ void add_named(const std::string& word, const fs::path& folder, std::vector<fs::
     return;
   }
   const fs::path path = folder / word;
-  // Every word of the text is tried: those that are numbers or keys are no files.
+  // Every word of the text is tried. Numbers and keys are not files.
   if (word.find('.') != std::string::npos && fs::exists(path, status) &&
       (fs::is_regular_file(path, status) || fs::is_directory(path / ".", status)) &&
       path.filename() != "." && path.filename() != "..") {
@@ -46,7 +46,7 @@ std::vector<fs::path> scene_inputs(const fs::path& scene) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::string line = text.substr(at, end - at);
     at = end + 1;
-    // A value up to the end of its line may hold spaces.
+    // A value that extends to the end of its line may contain spaces.
     if (const std::size_t value = line.find(": "); value != std::string::npos) {
       std::string whole = line.substr(value + 2);
       whole.erase(0, whole.find_first_not_of(" \t\"'"));

@@ -15,21 +15,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the folders of arm files that set the limits of a real arm, the first first.
+/// Returns the folders of arm files that set the limits of a real arm, in order of precedence.
 std::vector<fs::path> installed_arm_folders() {
   std::vector<fs::path> folders{own_arm_folder()};
   if (const fs::path own = own_folder(); !own.empty()) folders.push_back(own / "arms");
   return folders;
 }
 
-/// Lists the files in folders, of each name the first.
+/// Lists the files in folders. Of several files with one name, the first is listed.
 std::vector<ShippedFile> list_in(const std::vector<fs::path>& folders) {
   std::map<std::string, fs::path> found;
   for (const fs::path& folder : folders) {
     std::error_code status, missing;
     for (fs::directory_iterator entry(folder, status), end; !status && entry != end;
          entry.increment(status)) {
-      // Not a pipe, which nobody should wait for, or a folder.
+      // Folders are skipped, and pipes, because reading a pipe would block.
       if (entry->path().extension() == ".yaml" && entry->is_regular_file(missing)) {
         found.try_emplace(entry->path().stem().string(), entry->path());
       }
@@ -53,11 +53,11 @@ std::vector<ShippedFile> list(std::string_view kind) {
 driver::Result<fs::path> find(const std::string& meant, const char* kind, const char* noun) {
   if (meant.empty()) {
     return driver::Error{
-        "The name is empty; give a file, or a name that `thimble run --list` lists."};
+        "The name is empty; give a file, or a name that `thimble run --list` prints."};
   }
   std::error_code status;
   const bool there = fs::exists(meant, status) && !fs::is_directory(meant, status);
-  // A word is a name first; a file of the working folder has an extension or a slash.
+  // A word without slash or extension is a name first, and then a file in the working folder.
   const bool is_path =
       meant.find('/') != std::string::npos || (there && !fs::path(meant).extension().empty());
   if (is_path) return fs::path(meant);
@@ -72,12 +72,12 @@ driver::Result<fs::path> find(const std::string& meant, const char* kind, const 
   if (there) return fs::path(meant);
   const auto near = nearest_word(meant, known);
   return driver::Error{
-      meant + ": there is no such file, and no " + noun + " of that name. " +
+      meant + ": there is no such file, and no " + noun + " with this name. " +
       (near ? "Did you mean " + *near + "? " : "") +
       (names.empty()
-           ? "None is known by name here; give the path of a file, or say in XDG_DATA_DIRS "
-             "which folder holds thimble/ with its scenes and arms."
-           : "Known by name: " + names + ". `thimble run --list` tells more.")};
+           ? "No names are known here; give the path of a file, or set XDG_DATA_DIRS to the "
+             "folder that contains thimble/ with its scenes and arms."
+           : "Known by name: " + names + ". `thimble run --list` prints details.")};
 }
 
 }  // namespace
@@ -107,7 +107,7 @@ bool is_installed_arm(const fs::path& file) {
 
 std::string description_of(const fs::path& file) {
   auto yaml = YamlFile::load(file);
-  // `thimble run` reports what is wrong with a file.
+  // `thimble run` reports the mistakes of a file.
   return yaml ? yaml->root().optional_string("description", "") : std::string();
 }
 

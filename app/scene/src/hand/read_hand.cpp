@@ -8,7 +8,7 @@
 namespace thimble::scene {
 namespace {
 
-// Bounds catch slipped decimal points and values in mm, as those of the objects.
+// The bounds catch misplaced decimal points and values in mm, as for objects.
 constexpr double kPointMax = 2;     // m
 constexpr double kPushMax = 0.1;    // m
 constexpr double kTimeMax = 86400;  // s
@@ -31,20 +31,21 @@ HandWaypoint read_waypoint(YamlMap map, const std::vector<SceneObject>& objects)
       known = true;
       is_field = object.build_field != nullptr;
       if (object.paged) {
-        map.reject("on",
-                   "the surface of a mesh in pages is not in memory to plan on; give points "
-                   "of the path by at: [x, y, z]");
+        map.reject(
+            "on",
+            "a page file is not in memory, so no path over its surface can be planned; give the "
+            "points by at: [x, y, z]");
       }
     }
     if (!known) map.reject("on", "expected an object of this scene, found \"" + *waypoint.on + '"');
-    if (is_field) map.reject("on", "a field has no surface to be on; use at: [x, y, z]");
+    if (is_field) map.reject("on", "a field has no surface; use at: [x, y, z]");
   }
   map.finish();
   return waypoint;
 }
 
-/// Reads how the simulated hand holds the arm, where the scene wants another one than the arm's
-/// file; limits as there.
+/// Reads how the simulated hand holds the arm, if the scene replaces the values of the arm file.
+/// The limits are the same.
 void read_grip(YamlMap map, device_sim::HandSettings& hand) {
   hand.mass = map.optional_number("mass", hand.mass, "kg", 0, 10);
   hand.stiffness = map.optional_number("stiffness", hand.stiffness, "N/m", 0, 1e5);
@@ -53,17 +54,17 @@ void read_grip(YamlMap map, device_sim::HandSettings& hand) {
   map.finish();
 }
 
-/// Reads the path that a ROS bag holds; `folder`: the scene's.
+/// Reads the path in a ROS bag; `folder`: that of the scene.
 std::vector<HandWaypoint> read_bag_path(YamlMap& map, const std::filesystem::path& folder) {
   const std::string text = map.require_string("bag");
   const std::string topic = map.optional_string("topic", "");
   const std::size_t axes = map.optional_choice("axes", 0, {"plain", "omni"});
-  if (map.has("path")) map.refuse("path", "cannot stand beside bag; the hand follows one of them");
+  if (map.has("path")) map.refuse("path", "cannot be used with bag; keep one of them");
   if (text.empty()) return {};
   auto hand =
       read_bag_hand((folder / text).lexically_normal(), topic, static_cast<bag::BagAxes>(axes));
   if (hand) return std::move(hand).value();
-  std::string sentence = hand.error().message;  // here it stands within one
+  std::string sentence = hand.error().message;  // becomes part of another sentence
   if (sentence.ends_with('.')) sentence.pop_back();
   map.refuse("bag", sentence);
   return {};
@@ -84,7 +85,7 @@ std::vector<HandWaypoint> read_hand(YamlMap map, const std::vector<SceneObject>&
   for (YamlMap& entry : map.require_maps("path")) {
     hand.push_back(read_waypoint(entry, objects));
     if (hand.size() > 1 && !(hand.back().time > hand[hand.size() - 2].time)) {
-      entry.reject("t", "expected a time after that of the station before");
+      entry.reject("t", "expected a later time than that of the waypoint before");
     }
   }
   map.finish();

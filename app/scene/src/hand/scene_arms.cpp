@@ -17,16 +17,16 @@
 namespace thimble::scene {
 namespace {
 
-constexpr double kPlaceMax = 2;       // m
-constexpr std::size_t kArmsMost = 8;  // [chosen: two users with two hands each, and room]
+constexpr double kPlaceMax = 2;      // m
+constexpr std::size_t kArmsMax = 8;  // [chosen: two users with two hands each, and a reserve]
 
-/// Turns a box by quarters of a turn about z.
-WorkspaceBox box_turned(const WorkspaceBox& box, const Eigen::Matrix3d& R) {
+/// Rotates a box by multiples of 90 degrees about z.
+WorkspaceBox rotated_box(const WorkspaceBox& box, const Eigen::Matrix3d& R) {
   const Eigen::Vector3d a = R * box.min_W, b = R * box.max_W;
   return {.min_W = a.cwiseMin(b), .max_W = a.cwiseMax(b)};
 }
 
-/// Reads where an arm is put: turned about the vertical, as a desk allows, then moved.
+/// Reads the place of an arm: rotated about the vertical, as on a desk, and then moved.
 ArmPlace read_place(YamlMap map) {
   const Eigen::Vector3d p =
       map.optional_vector3("position", Eigen::Vector3d::Zero(), "m", -kPlaceMax, kPlaceMax);
@@ -38,7 +38,7 @@ ArmPlace read_place(YamlMap map) {
                            "world's axes, found {:g}",
                            degrees));
   }
-  // Exact for quarters of a turn.
+  // Exact for multiples of 90 degrees.
   const double turn = std::round(quarters) * std::numbers::pi / 2;
   const double c = std::round(math::cos(turn)), s = std::round(math::sin(turn));
   ArmPlace place;
@@ -48,7 +48,7 @@ ArmPlace read_place(YamlMap map) {
   return place;
 }
 
-/// Returns the file of an arm that an entry names: beside the scene, or by name.
+/// Returns the arm file that an entry names: next to the scene, or by name.
 driver::Result<std::filesystem::path> file_of(const std::string& text,
                                               const std::filesystem::path& folder) {
   const std::filesystem::path beside = (folder / text).lexically_normal();
@@ -60,7 +60,7 @@ driver::Result<std::filesystem::path> file_of(const std::string& text,
 driver::Result<SceneArm> read_arm_entry(YamlMap& map, const std::filesystem::path& folder) {
   SceneArm entry;
   entry.name = map.require_string("name");
-  // It names folders and groups of files.
+  // The name becomes part of names of folders and of groups of files.
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
   };
@@ -91,7 +91,7 @@ driver::Result<SceneArm> read_arm_entry(YamlMap& map, const std::filesystem::pat
 ArmFile ArmPlace::put(ArmFile arm) const {
   arm.R_WB = R * arm.R_WB;
   arm.p_WB = R * arm.p_WB + p;
-  arm.workspace = box_turned(arm.workspace, R);
+  arm.workspace = rotated_box(arm.workspace, R);
   arm.workspace.min_W += p;
   arm.workspace.max_W += p;
   return arm;
@@ -104,13 +104,13 @@ driver::Result<void> read_arms(YamlMap& root, const std::filesystem::path& folde
   scene.faults = static_cast<FaultRule>(root.optional_choice("faults", 0, {"together", "apart"}));
   for (const char* key : {"arm", "hand"}) {
     if (root.has(key)) {
-      root.refuse(key, "cannot stand beside arms; each entry of arms has its own");
+      root.refuse(key, "cannot be used with arms; each entry of arms has its own");
     }
   }
-  if (arms.size() == 1) root.refuse("arms", "expected two arms or more; of one say arm and hand");
-  if (arms.size() > kArmsMost) {
-    root.refuse("arms", fmt::format("expected at most {} arms, found {}", kArmsMost, arms.size()));
-    arms.resize(kArmsMost, arms.front());
+  if (arms.size() == 1) root.refuse("arms", "expected two arms or more; for one use arm and hand");
+  if (arms.size() > kArmsMax) {
+    root.refuse("arms", fmt::format("expected at most {} arms, found {}", kArmsMax, arms.size()));
+    arms.resize(kArmsMax, arms.front());
   }
   std::vector<SceneArm> read;
   for (YamlMap& map : arms) {
@@ -124,14 +124,14 @@ driver::Result<void> read_arms(YamlMap& root, const std::filesystem::path& folde
     read.push_back(std::move(entry).value());
   }
   if (read.size() > 1 && !reading.several_arms) {
-    return driver::Error{fmt::format(
-        "{}: the scene has {} arms, and this knows of one alone; thimble run takes all of them.",
-        scene.file.string(), read.size())};
+    return driver::Error{
+        fmt::format("{}: the scene has {} arms, but this command supports one; use thimble run.",
+                    scene.file.string(), read.size())};
   }
   if (read.size() > 1 && !reading.arm.empty()) {
     return driver::Error{
-        fmt::format("{}: the scene has {} arms, so one arm file cannot stand in place of all; "
-                    "change the entries of arms.",
+        fmt::format("{}: the scene has {} arms, so one arm file cannot replace them all; change "
+                    "the entries of arms.",
                     scene.file.string(), read.size())};
   }
   if (!read.empty()) scene.arms = std::move(read);

@@ -40,10 +40,10 @@ class SphereTree {
 
   // Nodes are in heap order: the children of node i are 2 i + 1 and 2 i + 2.
   void build(std::size_t node, std::size_t begin, std::size_t end);
-  void look_for_far_side(std::size_t node, std::size_t begin, std::size_t end,
-                         const Eigen::Vector3d& p, double& nearest) const;
-  void look_within(std::size_t node, std::size_t begin, std::size_t end, const Eigen::Vector3d& p,
-                   double reach, std::vector<std::size_t>& found) const;
+  void search_far_side(std::size_t node, std::size_t begin, std::size_t end,
+                       const Eigen::Vector3d& p, double& nearest) const;
+  void search_within(std::size_t node, std::size_t begin, std::size_t end, const Eigen::Vector3d& p,
+                     double reach, std::vector<std::size_t>& found) const;
   double distance(std::size_t node, const Eigen::Vector3d& p) const;
 
   std::vector<Sphere> spheres_;

@@ -14,8 +14,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Weights of the corners at the point of the triangle closest to p. Projects onto the plane and, if
-// that falls outside, onto the sides; a triangle without area is its sides.
+// Returns the weights of the corners at the point of a triangle closest to p. Projects p onto the
+// plane and, if the projection is outside, onto the sides. A triangle without area consists of its
+// sides.
 Vector3d closest_weights(const std::array<Vector3d, 3>& corner, const Vector3d& p) {
   const Vector3d ab = corner[1] - corner[0];
   const Vector3d ac = corner[2] - corner[0];
@@ -76,7 +77,7 @@ SurfaceProbe::SurfaceProbe(const render::TriangleMesh& mesh)
   for (const auto& triangle : mesh.triangles) {
     for (const std::int32_t v : triangle) box.extend(mesh.vertices[static_cast<std::size_t>(v)]);
   }
-  slack_ = 0.02 * box.diagonal().norm();  // chosen: some tens of gatherings along a path
+  slack_ = 0.02 * box.diagonal().norm();  // [chosen: some tens of gathers along a path]
 }
 
 SurfacePoint SurfaceProbe::closest(const Vector3d& p_WQ) {
@@ -85,8 +86,9 @@ SurfacePoint SurfaceProbe::closest(const Vector3d& p_WQ) {
 }
 
 void SurfaceProbe::gather(const Vector3d& p_WQ) {
-  // No triangle is farther than its sphere's far side; and while the question moves by `slack_`, a
-  // distance changes by at most `slack_`. So whatever can be closest meanwhile is in this list.
+  // The distance to a triangle is at most that to the far side of its sphere. While the query point
+  // moves by at most `slack_`, a distance changes by at most `slack_`. So the list contains every
+  // triangle that can become the closest.
   tree_.find_within(p_WQ, tree_.nearest_far_side(p_WQ) + 2 * slack_, candidates_);
   gathered_at_ = p_WQ;
 }

@@ -17,20 +17,20 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Edges longer than this share of the mesh have points in between to pass at. [chosen: a cube's
-// edge has eight]
+// Edges longer than this fraction of the mesh get additional points that a path may pass. [chosen:
+// an edge of a cube has eight]
 constexpr double kLongEdge = 1.0 / 16;
 constexpr int kEdgePointsMax = 8;
 
-// A path is drawn in steps of this share of the mesh, and pulled straight so often. [chosen: the
-// paths over a sphere of 2,000 triangles are then within 2 % of great circles]
+// Step of a path as a fraction of the mesh, and number of straightening passes. [chosen: paths over
+// a sphere of 2,000 triangles are within 2 % of great circles]
 constexpr double kStep = 1.0 / 200;
-constexpr int kPulls = 30;
+constexpr int kStraighteningPasses = 30;
 
-// A path through the free is looked for on so many places along each axis, around the mesh and a
-// little beyond its box. [chosen: gaps of a thirtieth of the mesh are found]
+// Number of grid points along each axis for paths through free space, in the box of the mesh with a
+// margin. [chosen: openings of a thirtieth of the mesh are found]
 constexpr int kGrid = 40;
-constexpr double kBeyond = 0.1;  // of the box's diagonal
+constexpr double kGridMargin = 0.1;  // margin as a fraction of the box's diagonal
 
 std::vector<Vector3d> resampled(const std::vector<Vector3d>& path, double step) {
   std::vector<Vector3d> points{path.front()};
@@ -44,14 +44,14 @@ std::vector<Vector3d> resampled(const std::vector<Vector3d>& path, double step) 
   return points;
 }
 
-// Places in space, of which only those that a path comes to are looked at.
+// Grid of points in space. A point is tested only when a path reaches it.
 class FreeGrid {
  public:
   FreeGrid(const Vector3d& origin, const Vector3d& step,
            std::function<bool(const Vector3d&)> is_free)
       : origin_(origin), step_(step), is_free_(std::move(is_free)) {}
 
-  // The shortest path over free places that are neighbours, also over a corner; empty if there is
+  // Returns the shortest path over free neighbouring points, diagonals included; empty if there is
   // none.
   std::vector<Vector3d> find(const Vector3d& from, const Vector3d& to) {
     constexpr int kCells = kGrid * kGrid * kGrid;
@@ -103,7 +103,7 @@ class FreeGrid {
     }
   }
 
-  // The free place nearest to a point, of those around it; -1 if none is free.
+  // Returns the free cell nearest to a point, among the cells around it; -1 if none is free.
   int free_cell_at(const Vector3d& p) const {
     const Vector3d index = (p - origin_).cwiseQuotient(step_);
     std::array<int, 3> at;
@@ -127,7 +127,8 @@ class FreeGrid {
 
 }  // namespace
 
-/// The corners of a surface and points on its long edges; two are joined if one triangle has both.
+/// Graph of the corners of a surface and of points on its long edges. Two nodes are connected if
+/// one triangle contains both.
 class SurfaceRoute::Graph {
  public:
   Graph(const render::TriangleMesh& mesh_W, double size)
@@ -161,8 +162,9 @@ class SurfaceRoute::Graph {
     }
   }
 
-  // The shortest path over the points between two triangles (E. W. Dijkstra, 1959; towards the goal
-  // by the straight distance: P. Hart, N. Nilsson, B. Raphael, 1968). Empty if there is none.
+  // Returns the shortest path over the nodes between two triangles; empty if there is none.
+  // Algorithm: E. W. Dijkstra, 1959, with the straight distance to the goal as lower bound (P.
+  // Hart, N. Nilsson, B. Raphael, 1968).
   std::vector<Vector3d> find(const SurfacePoint& from, const SurfacePoint& to) const {
     std::vector<double> length(points_.size(), std::numeric_limits<double>::infinity());
     std::vector<std::int32_t> before(points_.size(), -1);
@@ -192,7 +194,8 @@ class SurfaceRoute::Graph {
         std::reverse(path.begin(), path.end());
         return path;
       }
-      if (bound > length[n] + (points_[n] - to.p_WS).norm()) continue;  // reached nearer since
+      if (bound > length[n] + (points_[n] - to.p_WS).norm())
+        continue;  // a shorter path was found since
       for (const std::int32_t t : triangles_of_[n]) {
         for (const std::int32_t next : nodes_of_[static_cast<std::size_t>(t)]) {
           reach(next, length[n] + (points_[static_cast<std::size_t>(next)] - points_[n]).norm(),
@@ -204,8 +207,7 @@ class SurfaceRoute::Graph {
   }
 
  private:
-  const render::TriangleMesh
-      mesh_;  // triangles as in the world's mesh, corners at one place joined
+  const render::TriangleMesh mesh_;  // same triangles as the mesh in the world, with corners welded
   std::vector<Vector3d> points_;
   std::vector<std::vector<std::int32_t>> nodes_of_;      // points of each triangle
   std::vector<std::vector<std::int32_t>> triangles_of_;  // triangles at each point
@@ -215,7 +217,7 @@ SurfaceRoute::SurfaceRoute(const render::TriangleMesh& mesh_W, SurfaceProbe& pro
     : mesh_(mesh_W), probe_(probe) {
   for (const Vector3d& p : mesh_W.vertices) box_.extend(p);
   size_ = box_.diagonal().norm();
-  const Vector3d beyond = Vector3d::Constant(kBeyond * size_);
+  const Vector3d beyond = Vector3d::Constant(kGridMargin * size_);
   box_ = {box_.min() - beyond, box_.max() + beyond};
 }
 
@@ -233,9 +235,10 @@ std::vector<Vector3d> SurfaceRoute::over_surface(const Vector3d& p_from, const V
   return path;
 }
 
-// Moves each point to the surface next to the middle of its neighbours, where that is near.
+// Moves each point to the closest point of the surface to the midpoint of its neighbours, if that
+// is near enough.
 void SurfaceRoute::straighten(std::vector<Vector3d>& path) {
-  for (int pull = 0; pull < kPulls; ++pull) {
+  for (int pull = 0; pull < kStraighteningPasses; ++pull) {
     for (std::size_t i = 1; i + 1 < path.size(); ++i) {
       const Vector3d p = probe_.closest((path[i - 1] + path[i + 1]) / 2).p_WS;
       const double reach = 2 * kStep * size_;
@@ -244,7 +247,8 @@ void SurfaceRoute::straighten(std::vector<Vector3d>& path) {
   }
 }
 
-std::vector<Vector3d> SurfaceRoute::over_the_gap(const Vector3d& p_from, const Vector3d& p_to) {
+std::vector<Vector3d> SurfaceRoute::through_free_space(const Vector3d& p_from,
+                                                       const Vector3d& p_to) {
   const SurfacePoint from = probe_.closest(p_from);
   const SurfacePoint to = probe_.closest(p_to);
   FreeGrid grid(box_.min(), box_.sizes() / kGrid,
@@ -254,7 +258,7 @@ std::vector<Vector3d> SurfaceRoute::over_the_gap(const Vector3d& p_from, const V
   if (path.empty()) return path;
   path.insert(path.begin(), from.p_WS);
   path.push_back(to.p_WS);
-  // As few corners as the free allows.
+  // Removes all corners that free space does not need.
   std::vector<Vector3d> corners{path.front()};
   for (std::size_t i = 0; i + 1 < path.size();) {
     std::size_t next = path.size() - 1;
@@ -270,7 +274,7 @@ bool SurfaceRoute::is_outside(const Vector3d& p_W) {
   return near.n_W.dot(p_W - near.p_WS) >= -1e-9 * size_;
 }
 
-// Returns whether points along a line lie outside, as seen from the surface next to each.
+// Returns whether all points along a line are outside, as seen from the closest surface.
 bool SurfaceRoute::is_free(const Vector3d& p_from, const Vector3d& p_to) {
   const std::vector<Vector3d> points = resampled({p_from, p_to}, kStep * size_);
   return std::all_of(points.begin(), points.end(),

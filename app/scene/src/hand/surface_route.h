@@ -28,8 +28,8 @@ class SurfaceRoute {
   /// Returns the corners of a path that leaves the surface, passes over the space between, and
   /// returns. It stays outside of the mesh on a grid of about 30 cells across. Empty if there is
   /// none because the goal is inside another part.
-  std::vector<Eigen::Vector3d> over_the_gap(const Eigen::Vector3d& p_from,
-                                            const Eigen::Vector3d& p_to);
+  std::vector<Eigen::Vector3d> through_free_space(const Eigen::Vector3d& p_from,
+                                                  const Eigen::Vector3d& p_to);
 
  private:
   class Graph;

@@ -8,7 +8,8 @@
 namespace thimble::scene {
 namespace {
 
-// The only control characters of this program; what it shows has none (driver::printable).
+// The only control characters that this program writes; all other output is filtered
+// (driver::printable).
 constexpr std::string_view kEraseLine = "\r\033[K";
 
 void put(std::string_view text) {
@@ -35,7 +36,7 @@ void Console::show(std::string progress) {
 }
 
 Console& console() {
-  static Console* const only = new Console;  // never destroyed: threads may still write at the end
+  static Console* const only = new Console;  // never destroyed: threads may still write at exit
   return *only;
 }
 

@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char* kLine = "%Y-%m-%dT%H:%M:%S.%e%z %-8l %P %n: %v";
 
-/// Fails if a file of another kind has the name.
+/// Fails if a file of another kind has this name.
 driver::Result<void> check(const std::filesystem::path& path) {
   const auto place = output::resolve_output(path);
   if (!place) return place.error();
@@ -34,13 +34,13 @@ driver::Result<void> check(const std::filesystem::path& path) {
   return output::check_replaceable(path, *place, output::kLogFile, false);
 }
 
-/// Makes the file, for its owner only, before the library opens it.
+/// Creates the file with access for its owner only, before the logging library opens it.
 void make_owned(const spdlog::filename_t& path) {
   const int made = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOCTTY, 0600);
   if (made >= 0) ::close(made);
 }
 
-/// Takes an older file from other users, and does not leave it to children.
+/// Removes the access of other users to an existing file, and closes it in child processes.
 void keep_owned(const spdlog::filename_t&, std::FILE* stream) {
   const int descriptor = fileno(stream);
   struct stat about {};
@@ -56,14 +56,15 @@ LogFile::LogFile(std::filesystem::path path, Growth growth, std::string heading)
 void LogFile::open_it() {
   const std::filesystem::path folder = path_.parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder);
-  // Several processes may append to one log, whose lines have their numbers: it is not locked.
+  // The log is not locked: several processes may append to it, and each line has its process
+  // number.
   if (auto may = check(path_); !may) throw std::runtime_error(may.error().message);
   spdlog::file_event_handlers handlers;
   handlers.before_open = make_owned;
   handlers.after_open = keep_owned;
   if (growth_ == Growth::kRotates) {
-    file_ = std::make_shared<spdlog::sinks::rotating_file_sink_st>(path_.string(), kBytesMost,
-                                                                   kFilesMost - 1, false, handlers);
+    file_ = std::make_shared<spdlog::sinks::rotating_file_sink_st>(path_.string(), kBytesMax,
+                                                                   kFilesMax - 1, false, handlers);
   } else {
     file_ = std::make_shared<spdlog::sinks::basic_file_sink_st>(path_.string(), false, handlers);
   }
@@ -81,7 +82,7 @@ driver::Result<void> LogFile::open() {
     file_.reset();
     ended_ = true;
     return driver::Error{
-        fmt::format("{}: the log cannot be written there ({}).", path_.string(), trouble.what())};
+        fmt::format("{}: cannot write the log there ({}).", path_.string(), trouble.what())};
   }
 }
 
@@ -92,7 +93,7 @@ void LogFile::sink_it_(const spdlog::details::log_msg& message) {
     spdlog::details::log_msg shown = message;
     const std::string text = driver::printable({message.payload.data(), message.payload.size()});
     shown.payload = text;
-    // The name of a run, which is that of its scene or of --name.
+    // Name of a run: that of its scene, or of --name.
     const std::string name =
         driver::printable_name({message.logger_name.data(), message.logger_name.size()});
     shown.logger_name = name;
@@ -106,10 +107,11 @@ void LogFile::sink_it_(const spdlog::details::log_msg& message) {
 void LogFile::end(const std::string& why) {
   ended_ = true;
   file_.reset();
-  console().write(fmt::format(
-      "thimble: The log ends, for {} cannot be written ({}). All else goes on; mend the folder or "
-      "the disk, or name another file by --log.",
-      path_.string(), why));
+  console().write(
+      fmt::format("thimble: Logging has stopped, because {} cannot be written ({}). The run "
+                  "continues. Repair the "
+                  "folder or the disk, or name another file with --log.",
+                  path_.string(), why));
 }
 
 }  // namespace thimble::scene

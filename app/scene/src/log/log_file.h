@@ -20,11 +20,11 @@ class LogFile final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   /// Largest size of a file, bytes, and number of files kept by rotation: 5 MB. [chosen: an hour of
   /// touch produces about 100 kB]
-  static constexpr std::size_t kBytesMost = 1'000'000, kFilesMost = 5;
+  static constexpr std::size_t kBytesMax = 1'000'000, kFilesMax = 5;
 
   /// Growth of a log file.
   enum class Growth {
-    kRotates,  ///< Replaced by a new file at kBytesMost (NAME.1.log, ...).
+    kRotates,  ///< Replaced by a new file at kBytesMax (NAME.1.log, ...).
     kEndless,  ///< Unlimited; for a file named by the user.
   };
 

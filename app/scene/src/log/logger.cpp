@@ -18,20 +18,22 @@ std::shared_ptr<spdlog::sinks::sink> console_sink(const char* pattern, level_enu
   return sink;
 }
 
-constexpr const char* kSaid = "thimble: %v";
+constexpr const char* kMessagePattern = "thimble: %v";
 
-/// The loggers of this process and where they write.
+/// Loggers of this process, and their destinations.
 struct Log {
-  Log(Talk asked_talk, std::shared_ptr<LogFile> to) : file(std::move(to)), talk(asked_talk) {
-    const bool more = talk == Talk::kDebug || talk == Talk::kTrace;
-    const level_enum level = talk == Talk::kTrace    ? spdlog::level::trace
-                             : talk == Talk::kDebug  ? spdlog::level::debug
-                             : talk == Talk::kNormal ? spdlog::level::warn
-                                                     : spdlog::level::err;
-    if (file) file->set_level(talk == Talk::kTrace ? spdlog::level::trace : spdlog::level::debug);
-    runs = console_sink(kSaid, more ? level : spdlog::level::off);
-    said = make("thimble", console_sink(kSaid, level));
-    asked = make("terminal", console_sink("%v", spdlog::level::info));
+  Log(Verbosity requested_verbosity, std::shared_ptr<LogFile> to)
+      : file(std::move(to)), verbosity(requested_verbosity) {
+    const bool more = verbosity == Verbosity::kDebug || verbosity == Verbosity::kTrace;
+    const level_enum level = verbosity == Verbosity::kTrace    ? spdlog::level::trace
+                             : verbosity == Verbosity::kDebug  ? spdlog::level::debug
+                             : verbosity == Verbosity::kNormal ? spdlog::level::warn
+                                                               : spdlog::level::err;
+    if (file)
+      file->set_level(verbosity == Verbosity::kTrace ? spdlog::level::trace : spdlog::level::debug);
+    runs = console_sink(kMessagePattern, more ? level : spdlog::level::off);
+    main_logger = make("thimble", console_sink(kMessagePattern, level));
+    terminal_logger = make("terminal", console_sink("%v", spdlog::level::info));
   }
 
   std::shared_ptr<spdlog::logger> make(const std::string& name,
@@ -43,29 +45,29 @@ struct Log {
   }
 
   std::shared_ptr<LogFile> file;
-  Talk talk;
+  Verbosity verbosity;
   std::shared_ptr<spdlog::sinks::sink> runs;
-  std::shared_ptr<spdlog::logger> said, asked;
+  std::shared_ptr<spdlog::logger> main_logger, terminal_logger;
 };
 
 std::unique_ptr<Log>& log() {
-  // Never destroyed: threads may still write at the end.
-  static auto* const only = new std::unique_ptr<Log>(new Log(Talk::kNormal, nullptr));
+  // Never destroyed: threads may still write at exit.
+  static auto* const only = new std::unique_ptr<Log>(new Log(Verbosity::kNormal, nullptr));
   return *only;
 }
 
 }  // namespace
 
 spdlog::logger& logger() {
-  return *log()->said;
+  return *log()->main_logger;
 }
 
 spdlog::logger& terminal() {
-  return *log()->asked;
+  return *log()->terminal_logger;
 }
 
-Talk talk() {
-  return log()->talk;
+Verbosity verbosity() {
+  return log()->verbosity;
 }
 
 std::shared_ptr<spdlog::logger> run_logger(const std::string& run) {
@@ -80,7 +82,7 @@ driver::Result<void> begin_log(const LogChoice& choice) {
   if (named) {
     if (auto opened = file->open(); !opened) return opened;
   }
-  log() = std::make_unique<Log>(choice.talk, std::move(file));
+  log() = std::make_unique<Log>(choice.verbosity, std::move(file));
   return {};
 }
 

@@ -31,7 +31,7 @@ THIMBLE_EXPORT spdlog::logger& terminal();
 THIMBLE_EXPORT std::shared_ptr<spdlog::logger> run_logger(const std::string& run);
 
 /// Verbosity of the console.
-enum class Talk {
+enum class Verbosity {
   kQuiet,   ///< Errors only.
   kNormal,  ///< Errors and warnings.
   kDebug,   ///< Also events.
@@ -39,11 +39,11 @@ enum class Talk {
 };
 
 /// Returns the verbosity of the console requested from `begin_log`.
-THIMBLE_EXPORT Talk talk();
+THIMBLE_EXPORT Verbosity verbosity();
 
 /// Logging options of a process.
 struct LogChoice {
-  Talk talk = Talk::kNormal;
+  Verbosity verbosity = Verbosity::kNormal;
   std::filesystem::path file = {};  ///< Log file; empty: `default_log_file`, which rotates.
   std::string heading = {};         ///< First message in the file: program and command.
 };

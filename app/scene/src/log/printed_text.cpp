@@ -31,7 +31,7 @@ void print_format(const char* format, ...) {
 
 void show_progress(std::string_view text) {
   if (isatty(STDERR_FILENO) != 1) return;
-  std::fflush(stdout);  // lines that belong above it
+  std::fflush(stdout);  // earlier lines must appear above the progress
   console().show(std::string(text));
 }
 

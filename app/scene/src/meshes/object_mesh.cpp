@@ -15,7 +15,7 @@
 namespace thimble::scene {
 namespace {
 
-// What a sheet needs of its triangles, without the guesses of a repair.
+// Repairs that a sheet needs before it gets a thickness, without any that guess.
 constexpr render::RepairOptions kCleanedOnly{.tolerance = 0,
                                              .weld = false,
                                              .drop = true,
@@ -27,8 +27,8 @@ constexpr render::RepairOptions kCleanedOnly{.tolerance = 0,
 }  // namespace
 
 MeshPlacement placement_of(const render::TriangleMesh& mesh, const SceneObject& object) {
-  // The box of the mesh as it lies in its file gives the size: turning an object must not change
-  // it.
+  // The size is that of the box of the mesh in its file, so that a rotation of the object does not
+  // change it.
   Eigen::AlignedBox3d file_box;
   Eigen::AlignedBox3d turned_box;
   for (const Eigen::Vector3d& vertex : mesh.vertices) {
@@ -79,7 +79,7 @@ double reach_of(const Scene& scene) {
 }
 
 std::string unit_advice(const std::string& kind) {
-  return kind + " names no unit: set scale: 0.001 if it counts in mm, or size (m).";
+  return kind + " names no unit: set scale: 0.001 if its unit is mm, or size (m).";
 }
 
 driver::Result<std::string> judge_size(const SceneObject& object, const ObjectSize& size,
@@ -87,17 +87,17 @@ driver::Result<std::string> judge_size(const SceneObject& object, const ObjectSi
   if (!(reach > 0)) return std::string();
   const double reaches = size.side / reach;
   const bool stated = object.size || object.scale || size.has_unit;
-  const double most = stated ? kStatedReachesMax : kReachesMax;
-  // Written so that NaN is too large.
-  if (reaches <= (stated ? most : kReachesReported)) return std::string();
+  const double max_reaches = stated ? kStatedReachesMax : kReachesMax;
+  // Written so that NaN counts as too large.
+  if (reaches <= (stated ? max_reaches : kReachesReported)) return std::string();
   const std::string sentence =
       fmt::format("{}: {:.4g} m large, {:.0f} times the reach of the arm ({:.3g} m); ",
                   object.mesh_file.string(), size.side, reaches, reach);
-  if (reaches <= most) return sentence + unit_advice(size.kind);
+  if (reaches <= max_reaches) return sentence + unit_advice(size.kind);
   if (!stated) return driver::Error{sentence + unit_advice(size.kind)};
   return driver::Error{sentence +
-                       fmt::format("at most {:.0f} times are supported. Set a smaller {}.", most,
-                                   object.size ? "size (m)" : "scale")};
+                       fmt::format("at most {:.0f} times are supported. Set a smaller {}.",
+                                   max_reaches, object.size ? "size (m)" : "scale")};
 }
 
 driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object) {
@@ -117,7 +117,7 @@ driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object) {
       done.notes.push_back(about(render::describe(change)));
     }
     if (repaired.mesh.triangles.empty()) {
-      return driver::Error{about("no triangle of it has an area.")};
+      return driver::Error{about("no triangle has an area; export the mesh again.")};
     }
     mesh = std::move(repaired.mesh);
   }
@@ -130,7 +130,7 @@ driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object) {
     if (thick.report.sheets > 0) done.notes.push_back(about(render::describe(thick.report)));
     done.mesh_W = std::move(thick.mesh);
   }
-  // What plans and draws must know the same outside as what touches.
+  // Planning, drawing and contact must use the same outside.
   const render::OrientReport turned = render::orient_mesh(done.mesh_W);
   for (const std::string& note :
        {render::describe(turned), render::describe(render::find_touching_parts(done.mesh_W))}) {

@@ -20,7 +20,7 @@ namespace {
 using MeshPointer = std::shared_ptr<const render::TriangleMesh>;
 using NamedPointers = std::vector<std::pair<std::string, MeshPointer>>;
 
-/// What tells a file from the same one before it was changed.
+/// State of a file that detects a change of its contents.
 struct FileState {
   std::uintmax_t size = 0;
   std::filesystem::file_time_type changed;
@@ -29,11 +29,11 @@ struct FileState {
 };
 
 FileState state_of(const std::filesystem::path& file) {
-  std::error_code absent;  // who reads it says so
+  std::error_code absent;  // reported by the reader of the file
   return {std::filesystem::file_size(file, absent), std::filesystem::last_write_time(file, absent)};
 }
 
-/// What a mesh depends on that is read from a file.
+/// Everything that determines a mesh from a file.
 struct MeshKey {
   explicit MeshKey(const SceneObject& object)
       : file(std::filesystem::absolute(object.mesh_file).lexically_normal()),
@@ -56,30 +56,30 @@ struct MeshKey {
   Eigen::Vector3d p_WO;
 };
 
-/// Things by what they are made of; few enough to be looked through.
+/// Values by key, few enough for a linear search.
 template <class Key, class Value>
-class Shelf {
+class MeshCache {
  public:
   std::shared_ptr<const Value> find(const Key& key) const {
-    const auto found = std::find_if(things_.begin(), things_.end(),
-                                    [&key](const auto& thing) { return thing.first == key; });
-    return found == things_.end() ? nullptr : found->second;
+    const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                    [&key](const auto& entry) { return entry.first == key; });
+    return found == entries_.end() ? nullptr : found->second;
   }
   std::shared_ptr<const Value> keep(Key key, Value value) {
-    return things_.emplace_back(std::move(key), std::make_shared<const Value>(std::move(value)))
+    return entries_.emplace_back(std::move(key), std::make_shared<const Value>(std::move(value)))
         .second;
   }
-  std::size_t size() const { return things_.size(); }
+  std::size_t size() const { return entries_.size(); }
   void drop_unused() {
     drop_if([](const std::shared_ptr<const Value>& value) { return value.use_count() == 1; });
   }
   template <class Unused>
   void drop_if(const Unused& unused) {
-    std::erase_if(things_, [&](const auto& thing) { return unused(thing.second); });
+    std::erase_if(entries_, [&](const auto& entry) { return unused(entry.second); });
   }
 
  private:
-  std::vector<std::pair<Key, std::shared_ptr<const Value>>> things_;
+  std::vector<std::pair<Key, std::shared_ptr<const Value>>> entries_;
 };
 
 bool same(const render::TriangleMesh& a, const render::TriangleMesh& b) {
@@ -90,11 +90,11 @@ bool same(const render::TriangleMesh& a, const render::TriangleMesh& b) {
 
 struct SharedMeshes::Held {
   std::mutex mutex;
-  Shelf<MeshKey, ObjectMesh> files;
+  MeshCache<MeshKey, ObjectMesh> files;
   std::vector<MeshPointer> shapes;
-  Shelf<std::vector<MeshPointer>, render::TriangleMesh> joined;
-  Shelf<std::pair<MeshPointer, render::ContactChoice>, render::StillSurface> surfaces;
-  Shelf<std::pair<std::vector<HandWaypoint>, NamedPointers>, HandRoute> routes;
+  MeshCache<std::vector<MeshPointer>, render::TriangleMesh> joined;
+  MeshCache<std::pair<MeshPointer, render::ContactChoice>, render::StillSurface> surfaces;
+  MeshCache<std::pair<std::vector<HandWaypoint>, NamedPointers>, HandRoute> routes;
 };
 
 SharedMeshes::SharedMeshes() : held_(std::make_unique<Held>()) {}
@@ -112,7 +112,7 @@ std::size_t SharedMeshes::surfaces() const {
 
 void SharedMeshes::drop_unused() {
   const std::scoped_lock lock(held_->mutex);
-  // What is made of others goes before them.
+  // Objects are removed before those that they are made from.
   held_->routes.drop_unused();
   held_->surfaces.drop_if([](const auto& still) { return still->search.use_count() == 1; });
   held_->joined.drop_unused();

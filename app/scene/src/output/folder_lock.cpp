@@ -27,7 +27,7 @@ struct FolderLock::Held {
 
 driver::Result<FolderLock> FolderLock::take(const std::filesystem::path& folder) {
   static std::mutex mutex;
-  // Of this process; a child that was forked has its parent's, which are not its own.
+  // Folders of this process. A forked child has a copy of its parent's, which it does not own.
   static std::map<std::tuple<pid_t, dev_t, ino_t>, std::weak_ptr<Held>> all;
   const std::filesystem::path place = folder.empty() ? "." : folder;
   const int descriptor = ::open(place.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

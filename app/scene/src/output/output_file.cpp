@@ -18,18 +18,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Outputs that wait for their writer, by target.
-struct Kept {
+/// Outputs that are reserved for a later writer, by target.
+struct ReservedOutputs {
   std::mutex mutex;
   std::map<fs::path, OutputFile> files;
 };
 
-Kept& kept() {
-  static auto* const only = new Kept;  // never destroyed: threads may still write at the end
+ReservedOutputs& reserved() {
+  static auto* const only =
+      new ReservedOutputs;  // never destroyed: threads may still write at exit
   return *only;
 }
 
-/// Returns the name of the part: the ending stays, because programs choose formats by it.
+/// Returns the name of the part. It keeps the extension, because programs select formats by it.
 fs::path part_of(const fs::path& target) {
   constexpr std::size_t kStemMax = 200;  // bytes; names have 255 [S limits.h, NAME_MAX]
   return target.parent_path() / (target.stem().string().substr(0, kStemMax) + ".thimble-part" +
@@ -38,12 +39,12 @@ fs::path part_of(const fs::path& target) {
 
 driver::Error busy(const fs::path& path, int descriptor) {
   return cannot_write(path, "it is being written or read by " + lock_holder(descriptor) +
-                                ". Wait until that has ended, or name another file.");
+                                ". Wait until it has finished, or name another file.");
 }
 
 driver::Error failed(const fs::path& path, int number) {
   const bool full = number == ENOSPC || number == EDQUOT || number == EFBIG;
-  return cannot_write(path, error_text(number) + (full ? ". Make room, or name another disk."
+  return cannot_write(path, error_text(number) + (full ? ". Free some space, or name another disk."
                                                        : ". Check its folder, or name another."));
 }
 
@@ -68,8 +69,8 @@ driver::Result<void> check_replaceable(const fs::path& path, const OutputPath& p
     if (error) return *error;
   }
   if (kind.existing == Existing::kKeep) {
-    return cannot_write(path, "it exists already, and no file is replaced by " +
-                                  std::string(kind.name) + ". Name another.");
+    return cannot_write(path, "it exists already, and " + std::string(kind.name) +
+                                  " never replaces a file. Name another.");
   }
   std::error_code status;
   if (fs::file_size(place.target, status) == 0 && !status) return {};
@@ -81,7 +82,7 @@ driver::Result<void> check_replaceable(const fs::path& path, const OutputPath& p
   if (kind.existing == Existing::kReplaceForced && !replace) {
     return cannot_write(path, std::string(kind.name) +
                                   " exists there already and is kept. Give the output another "
-                                  "name, or allow it to be replaced (--force; in Python and C++ "
+                                  "name, or allow its replacement (--force; in Python and C++ "
                                   "`overwrite`).");
   }
   return {};
@@ -92,10 +93,10 @@ driver::Result<OutputFile> OutputFile::open(const fs::path& path, const OutputKi
   auto place = resolve_output(path);
   if (!place) return place.error();
   {
-    const std::lock_guard guard(kept().mutex);
-    if (const auto found = kept().files.find(place->target); found != kept().files.end()) {
+    const std::lock_guard guard(reserved().mutex);
+    if (const auto found = reserved().files.find(place->target); found != reserved().files.end()) {
       OutputFile file = std::move(found->second);
-      kept().files.erase(found);
+      reserved().files.erase(found);
       return file;
     }
   }
@@ -105,7 +106,7 @@ driver::Result<OutputFile> OutputFile::open(const fs::path& path, const OutputKi
     return opened.error();
   }
   if (file.stream()) return file;
-  // Again under the lock: another writer may have published it meanwhile.
+  // Checked again under the lock: another writer may have published the file in the meantime.
   auto now = resolve_output(path);
   if (!now) return now.error();
   if (auto may = check_replaceable(path, *now, kind, replace); !may) return may.error();
@@ -131,7 +132,7 @@ driver::Result<void> OutputFile::open_stream() {
 }
 
 driver::Result<void> OutputFile::open_part(const OutputKind& kind) {
-  constexpr int kAttemptsMax = 100;  // each lost to a writer that published in between
+  constexpr int kAttemptsMax = 100;  // an attempt fails if another writer publishes in between
   const mode_t mode = kind.owner_only ? 0600 : 0666;
   const fs::path part = part_of(place_.target);
   for (int attempt = 0; attempt < kAttemptsMax; ++attempt) {
@@ -156,7 +157,7 @@ driver::Result<void> OutputFile::open_part(const OutputKind& kind) {
     }
     if (!S_ISREG(ours.st_mode) || ours.st_nlink != 1) {
       ::close(opened);
-      return cannot_write(name_, part.string() + " is no part of an output. Remove it.");
+      return cannot_write(name_, part.string() + " is not a part of an output. Remove it.");
     }
     descriptor_ = opened;
     part_ = part;
@@ -166,13 +167,13 @@ driver::Result<void> OutputFile::open_part(const OutputKind& kind) {
     if (kind.owner_only) {
       if (::fchmod(opened, 0600) != 0) return failed(name_, errno);
     } else if (replaces) {
-      // As far as it may: an administrator's run leaves a user's file to the user.
+      // If permitted: an administrator's run leaves a user's file to the user.
       [[maybe_unused]] const int owner = ::fchown(opened, before.st_uid, before.st_gid);
       [[maybe_unused]] const int access = ::fchmod(opened, before.st_mode & 0777);
     }
     return {};
   }
-  return cannot_write(name_, "other programs write it all the time. Name another file.");
+  return cannot_write(name_, "other programs write it continuously. Name another file.");
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
@@ -226,7 +227,7 @@ driver::Result<void> OutputFile::commit() {
   if (auto done = publish(); !done) return done;
   if (descriptor_ < 0) return {};
   if (!stream()) unlock(descriptor_);
-  // Some file systems report a full disk only now.
+  // Some file systems report a full disk only on close.
   if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) return failed(name_, errno);
   return {};
 }
@@ -246,14 +247,14 @@ driver::Result<fs::path> reserve_output(const fs::path& path, const OutputKind& 
   auto file = OutputFile::open(path, kind, replace);
   if (!file) return file.error();
   const fs::path key = file->target();
-  const std::lock_guard guard(kept().mutex);
-  kept().files.insert_or_assign(key, std::move(file).value());
+  const std::lock_guard guard(reserved().mutex);
+  reserved().files.insert_or_assign(key, std::move(file).value());
   return key;
 }
 
 void release_output(const fs::path& key) {
-  const std::lock_guard guard(kept().mutex);
-  kept().files.erase(key);
+  const std::lock_guard guard(reserved().mutex);
+  reserved().files.erase(key);
 }
 
 driver::Result<void> write_file(const fs::path& path, const OutputKind& kind,

@@ -71,7 +71,7 @@ bool is_svg(const path& file) {
   return text.starts_with("<svg") ||
          (text.starts_with("<?xml") && text.find("<svg") != std::string::npos);
 }
-bool is_film(const path& file) {
+bool is_animation(const path& file) {
   const std::string bytes = beginning(file, 12);
   return bytes.starts_with("GIF8") || (bytes.size() > 8 && bytes.compare(4, 4, "ftyp") == 0);
 }
@@ -125,7 +125,7 @@ const OutputKind kTable{.name = "a table (CSV)", .matches = is_table};
 const OutputKind kSound{.name = "a sound (WAV)", .matches = is_sound};
 const OutputKind kPng{.name = "a picture (PNG)", .matches = is_png};
 const OutputKind kSvg{.name = "a picture (SVG)", .matches = is_svg};
-const OutputKind kFilm{.name = "a film (MP4 or GIF)", .matches = is_film};
+const OutputKind kAnimation{.name = "an animation (MP4 or GIF)", .matches = is_animation};
 const OutputKind kMesh{.name = "a mesh (OFF)", .matches = is_mesh};
 const OutputKind kPageFile{.name = "a page file", .matches = is_page_file, .needs_file = true};
 const OutputKind kJson{.name = "JSON", .matches = is_json};

@@ -30,13 +30,13 @@ THIMBLE_EXPORT extern const OutputKind kTable;  ///< CSV: a heading of several c
 THIMBLE_EXPORT extern const OutputKind kSound;  ///< WAV
 THIMBLE_EXPORT extern const OutputKind kPng;    ///< PNG, animated or not.
 THIMBLE_EXPORT extern const OutputKind kSvg;    ///< SVG
-THIMBLE_EXPORT extern const OutputKind kFilm;   ///< MP4 or GIF
-THIMBLE_EXPORT extern const OutputKind kMesh;   ///< OFF
-THIMBLE_EXPORT extern const OutputKind kPageFile;  ///< Mesh for disk paging.
-THIMBLE_EXPORT extern const OutputKind kJson;      ///< JSON
-THIMBLE_EXPORT extern const OutputKind kXml;       ///< XML
-THIMBLE_EXPORT extern const OutputKind kWebPage;   ///< HTML made by Thimble.
-THIMBLE_EXPORT extern const OutputKind kArmFile;   ///< Arm file; no file is replaced by one.
+THIMBLE_EXPORT extern const OutputKind kAnimation;  ///< MP4 or GIF
+THIMBLE_EXPORT extern const OutputKind kMesh;       ///< OFF
+THIMBLE_EXPORT extern const OutputKind kPageFile;   ///< Mesh for disk paging.
+THIMBLE_EXPORT extern const OutputKind kJson;       ///< JSON
+THIMBLE_EXPORT extern const OutputKind kXml;        ///< XML
+THIMBLE_EXPORT extern const OutputKind kWebPage;    ///< HTML made by Thimble.
+THIMBLE_EXPORT extern const OutputKind kArmFile;    ///< Arm file; no file is replaced by one.
 /// Table of `thimble study accuracy --table`.
 THIMBLE_EXPORT extern const OutputKind kQualityTable;
 THIMBLE_EXPORT extern const OutputKind kMotionTrace;  ///< Trace of `thimble plug --trace`.

@@ -10,9 +10,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kLinksMax = 40;  // as Linux follows [S man 7 path_resolution]
+constexpr int kLinksMax = 40;  // same limit as Linux [S man 7 path_resolution]
 
-/// Returns whether a name is a descriptor or device of the system, whatever it stands for: writing
+/// Returns whether a name is a descriptor or device of the system, whatever it refers to: writing
 /// to /dev/stdout must not replace the file that the shell has opened.
 bool is_system_name(const fs::path& path) {
   const std::string text = fs::absolute(path).lexically_normal().string();
@@ -33,7 +33,7 @@ driver::Error cannot_write(const fs::path& path, const std::string& why) {
 driver::Result<OutputPath> resolve_output(const fs::path& path) {
   if (path.empty()) return cannot_write(path, "the name is empty. Give a file name.");
   if (path == "-") {
-    return cannot_write(path, "- does not mean standard output here. Name a file.");
+    return cannot_write(path, "standard output is not supported here. Name a file.");
   }
   OutputPath found;
   struct stat about {};
@@ -49,7 +49,7 @@ driver::Result<OutputPath> resolve_output(const fs::path& path) {
   if (!target.has_filename()) target = target.parent_path();  // "folder/"
   std::error_code failed;
   for (int links = 0; fs::is_symlink(target, failed); ++links) {
-    if (links == kLinksMax) return cannot_write(path, "its links lead in a circle. Name a file.");
+    if (links == kLinksMax) return cannot_write(path, "its links form a loop. Name a file.");
     const fs::path to = fs::read_symlink(target, failed);
     if (failed) return cannot_write(path, failed.message() + ".");
     target = target.parent_path() / to;

@@ -19,15 +19,15 @@ driver::Error by_option(const std::string& option, const driver::Error& error) {
   return driver::Error{option + ": " + error.message};
 }
 
-/// Fails if no file can be made in a folder. Asking for permissions is not enough: an administrator
-/// has them all, and a disk may be read-only.
+/// Fails if no file can be created in a folder. A check of permissions is not enough: an
+/// administrator has all of them, and a disk may be read-only.
 driver::Result<void> check_writable(const fs::path& folder) {
   const int unnamed = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
   if (unnamed >= 0) return ::close(unnamed), driver::Result<void>();
   std::string name = (folder / ".thimble-XXXXXX").string();
   const int named = ::mkostemp(name.data(), O_CLOEXEC);
   if (named < 0) {
-    return cannot_write(folder, error_text(errno) + ". Name a folder that you may write to.");
+    return cannot_write(folder, error_text(errno) + ". Name a writable folder.");
   }
   ::unlink(name.c_str());
   ::close(named);
@@ -37,10 +37,10 @@ driver::Result<void> check_writable(const fs::path& folder) {
 }  // namespace
 
 OutputPlan::~OutputPlan() {
-  for (const fs::path& key : kept_) release_output(key);
+  for (const fs::path& key : reserved_) release_output(key);
   std::error_code ignored;
   for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) {
-    ::rmdir(folder->c_str());  // leaves what is not empty
+    ::rmdir(folder->c_str());  // fails if the folder is not empty
   }
 }
 
@@ -79,7 +79,7 @@ driver::Result<void> OutputPlan::make_folder(const Output& output) {
   fs::create_directories(folder, failed);
   made_.insert(made_.end(), missing.rbegin(), missing.rend());
   if (failed) {
-    return cannot_write(output.path, failed.message() + ". Name a folder that you may write to.");
+    return cannot_write(output.path, failed.message() + ". Name a writable folder.");
   }
   if (!fs::is_directory(folder, failed)) {
     return cannot_write(output.path, "it is not a folder. Name a folder.");
@@ -98,7 +98,7 @@ driver::Result<void> OutputPlan::add_places(const Output& output,
   for (const std::string& name : output.names) {
     const fs::path path = output.path / name;
     auto inner = resolve_output(path);
-    if (!inner) continue;  // in a folder that does not exist yet
+    if (!inner) continue;  // its folder does not exist yet
     places.push_back({output.option, path, *inner});
     if (output.begun) continue;
     if (auto may = check_replaceable(path, *inner, kind_of_name(path), false); !may) return may;
@@ -128,7 +128,7 @@ driver::Result<void> OutputPlan::compare(const std::vector<Place>& places) const
 
 driver::Result<void> OutputPlan::begin() {
   std::vector<Place> places;
-  // Folders first: files may be named in them.
+  // Folders come first: files may be in them.
   for (const bool folders : {true, false}) {
     for (const Output& output : outputs_) {
       if ((output.kind == nullptr) != folders) continue;
@@ -148,7 +148,7 @@ driver::Result<void> OutputPlan::begin() {
     if (output.use != Use::kKeep) continue;
     auto key = reserve_output(output.path, *output.kind, output.replace);
     if (!key) return by_option(output.option, key.error());
-    kept_.push_back(*key);
+    reserved_.push_back(*key);
   }
   return {};
 }

@@ -65,8 +65,8 @@ class THIMBLE_EXPORT OutputPlan {
   std::vector<std::filesystem::path> inputs_;
   std::vector<Output> outputs_;
   std::vector<FolderLock> locks_;
-  std::vector<std::filesystem::path> made_;  // Created folders, outermost first.
-  std::vector<std::filesystem::path> kept_;  // Keys of reserved outputs.
+  std::vector<std::filesystem::path> made_;      // Created folders, outermost first.
+  std::vector<std::filesystem::path> reserved_;  // Keys of reserved outputs.
 };
 
 }  // namespace thimble::output

@@ -10,7 +10,7 @@ namespace thimble::output {
 bool open_standard_streams() noexcept {
   for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
     if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
-    // The lowest free number is the stream's: those below it are open. Children inherit it.
+    // open() returns the lowest free descriptor, which is that of the stream. Children inherit it.
     if (::open("/dev/null", stream == STDIN_FILENO ? O_RDONLY : O_WRONLY) != stream) return false;
   }
   return true;

@@ -13,16 +13,16 @@ using render::BlendingChoice;
 using render::SpringScheme;
 using render::TrackerChoice;
 
-// Where dents end and how they are stepped. The force of one ring is off by less than can be felt,
-// as `thimble study accuracy --axis rings` shows; the trapezoid with eight steps is below 3.5 %
-// even while a body oscillates (axis deformable).
+// Number of rings of a dent, and its integration steps. The error of one ring is below the limit of
+// perception, as `thimble study accuracy --axis rings` shows. The trapezoid with eight steps is
+// below 3.5 % even while a body oscillates (axis deformable).
 constexpr int kDraftRings = 1;
 constexpr int kReferenceRings = 6;
 constexpr int kReferenceSubsteps = 8;
 constexpr double kReferenceRemainder = 1e-5;
 
-// Of the loop, over the scene's rate: half the ticks, and a loop at which a wall of 800 N/m gives
-// a free arm less than can be felt (axis loop_rate).
+// Rate of the loop, relative to that of the scene: half the ticks; and a rate at which a wall of
+// 800 N/m gives a free arm less energy than can be felt (axis loop_rate).
 constexpr double kDraftRate = 0.5;
 constexpr double kReferenceRate = 4;
 
@@ -31,11 +31,11 @@ std::string draft(SceneObject& object) {
   if (leaves_surface_open(object) && !object.tracker_named &&
       object.contact.tracker != TrackerChoice::kEdgePlanes) {
     object.contact.tracker = TrackerChoice::kEdgePlanes;
-    text += " flat triangles followed by edge planes, the cheapest contact;";
+    text += " flat triangles with edge planes, the cheapest contact;";
   }
   if (object.body.dent && !object.body.dent->whole && object.body.dent->rings > kDraftRings) {
     object.body.dent->rings = kDraftRings;
-    text += " a dent of one ring, which the hand cannot tell from more;";
+    text += " a dent of one ring, which feels the same as more rings;";
   }
   return text;
 }
@@ -46,11 +46,10 @@ std::string reference(SceneObject& object) {
     object.contact.blending = BlendingChoice::kPhong;
     text += " Phong normals (edges sharper than the crease angle stay sharp),";
     if (object.body.shape.named()) {
-      text += " without curved depth, for the surface changes its shape;";
+      text += " without curved depth, because the surface changes its shape;";
     } else {
       object.contact.curved_depth = true;
-      text +=
-          " and curved depth, with which triangles of a fifth of the radius are no longer felt;";
+      text += " and curved depth, so that triangles of a fifth of the radius are no longer felt;";
     }
   }
   if (object.body.dent) {
@@ -59,7 +58,7 @@ std::string reference(SceneObject& object) {
     dent.substeps = std::max(dent.substeps, kReferenceSubsteps);
     dent.remainder = kReferenceRemainder;
     dent.rings = std::max(dent.rings, kReferenceRings);
-    text += " a dent of six rings stepped by the trapezoid eight times per tick;";
+    text += " a dent of six rings, integrated by the trapezoid with eight steps per tick;";
   }
   return text;
 }
@@ -67,16 +66,18 @@ std::string reference(SceneObject& object) {
 std::string rate_sentence(Quality quality, const Scene& scene) {
   if (scene.rate_factor == 1) {
     return quality == Quality::kDraft
-               ? "The loop's rate stays as the scene says: it is a real arm's, or half of it would "
-                 "not hold these surfaces well."
-               : "The loop's rate stays as the scene says: it is the real arm's.";
+               ? "The rate of the loop stays that of the scene: the arm is real, or half the rate "
+                 "would "
+                 "be unstable on these surfaces."
+               : "The rate of the loop stays that of the scene: the arm is real.";
   }
   return fmt::format(
-      "The loop runs at {:g} Hz, {:g} times what the scene says{}; frictions stay as it says.",
+      "The loop runs at {:g} Hz, {:g} times the rate of the scene{}; frictions stay as in the "
+      "scene.",
       scene.rate, scene.rate_factor,
-      scene.rate_factor < 1 ? ", which these surfaces bear: half the work per second"
-                            : ", and the simulated board with it, so that a tick's time is felt as "
-                              "little as can be");
+      scene.rate_factor < 1 ? ", at which these surfaces are stable: half the work per second"
+                            : ", and so does the simulated board, so that the period of a tick is "
+                              "felt as little as possible");
 }
 
 }  // namespace
@@ -96,17 +97,17 @@ std::vector<std::string> apply_quality(Quality quality, Scene& scene,
                                        std::optional<double> budget) {
   if (quality == Quality::kNormal) return {};
   if (quality == Quality::kAuto) return choose_quality(scene, budget);
-  std::vector<std::string> said;
+  std::vector<std::string> notes;
   for (SceneObject& object : scene.objects) {
     std::string text = quality == Quality::kDraft ? draft(object) : reference(object);
     if (text.empty()) {
-      text = " as the scene says;";
+      text = " as in the scene;";
     }
     text.back() = '.';
-    said.push_back(object.name + ":" + text);
+    notes.push_back(object.name + ":" + text);
   }
-  said.push_back(rate_sentence(quality, scene));
-  return said;
+  notes.push_back(rate_sentence(quality, scene));
+  return notes;
 }
 
 }  // namespace thimble::scene

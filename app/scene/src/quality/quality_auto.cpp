@@ -21,26 +21,28 @@ namespace {
 using render::BlendingChoice;
 using render::TrackerChoice;
 
-constexpr double kBeyond = 1.05;  // of the coarsest mesh in the table, from which on it is told
+constexpr double kTurnMargin =
+    1.05;  // relative to the coarsest mesh of the table; beyond it a note is printed
 
-/// One point that a knob of an object can be put on.
+/// One setting of a choice of an object.
 struct Candidate {
-  double error = 0;  // over what can be felt
+  double error = 0;  // relative to the limit of perception
   double ns = 0;
   std::string words;
   std::function<void(SceneObject&)> choose;
 };
 
-/// One knob of an object, with the points on its diagram.
+/// One choice of an object, with its settings.
 struct Knob {
   std::size_t object = 0;
-  std::string where;  // said after the point: on what it was judged
+  std::string where;  // note printed after the setting: what it was judged on
   std::vector<Candidate> candidates;
 };
 
-// Between two measured finenesses an error goes by a power of the turn; beyond both ends as at the
-// nearer one.
-double between(double x, const ContactPoint& a, const ContactPoint& b, double of_a, double of_b) {
+// Interpolates an error or a time between two measured meshes as a power of the turn. Beyond them
+// it is that of the nearer mesh.
+double interpolate(double x, const ContactPoint& a, const ContactPoint& b, double of_a,
+                   double of_b) {
   if (!(of_a > 0 && of_b > 0)) return of_a;
   const double share = std::clamp(math::log(x / a.turn) / math::log(b.turn / a.turn), 0.0, 1.0);
   return math::exp((1 - share) * math::log(of_a) + share * math::log(of_b));
@@ -55,8 +57,8 @@ std::string words_of(const ContactPoint& point) {
   return text;
 }
 
-// What this surface can be felt by, for a mesh whose edges turn by `turn`. The table holds the
-// points of a way one after another, from coarse to fine.
+// Returns the contact settings for this surface, for a mesh whose normals turn by `turn` over an
+// edge. The table lists the measured points of each setting together, from coarse to fine.
 std::vector<Candidate> contacts_for(const SceneObject& object, double turn) {
   std::vector<Candidate> all;
   const auto points = quality_table().contacts;
@@ -68,7 +70,7 @@ std::vector<Candidate> contacts_for(const SceneObject& object, double turn) {
     while (end < points.size() && same_way(points[begin], points[end])) ++end;
     const ContactPoint& way = points[begin];
     if (object.tracker_named && way.tracker != object.contact.tracker) continue;
-    // A surface that changes its shape has neither records nor a depth below triangles.
+    // A surface that changes its shape supports neither compact triangles nor curved depth.
     if (object.body.shape.named() &&
         (way.tracker != TrackerChoice::kEdgePlanes || way.curved_depth.value_or(false) ||
          way.blending == BlendingChoice::kSizedBand)) {
@@ -77,8 +79,8 @@ std::vector<Candidate> contacts_for(const SceneObject& object, double turn) {
     std::size_t k = begin;
     while (k + 2 < end && turn < points[k + 1].turn) ++k;
     const ContactPoint &a = points[k], &b = points[std::min(k + 1, end - 1)];
-    const double error = turn > 0 ? between(turn, a, b, a.error, b.error) : 0;
-    const double ns = turn > 0 ? between(turn, a, b, a.ns, b.ns) : points[end - 1].ns;
+    const double error = turn > 0 ? interpolate(turn, a, b, a.error, b.error) : 0;
+    const double ns = turn > 0 ? interpolate(turn, a, b, a.ns, b.ns) : points[end - 1].ns;
     all.push_back({error, ns, words_of(way), [&way](SceneObject& chosen) {
                      chosen.contact.tracker = way.tracker;
                      chosen.contact.blending = way.blending;
@@ -92,7 +94,7 @@ std::vector<Candidate> dents_for(const SceneObject& object) {
   std::vector<Candidate> all;
   const bool whole = object.body.dent->whole;
   for (const RingsPoint& patch : quality_table().rings) {
-    // All vertices of a whole body move, however many rings are asked for.
+    // All vertices of a whole body move, whatever number of rings is set.
     if (whole && patch.rings != quality_table().rings.back().rings) continue;
     for (const StepsPoint& steps : quality_table().steps) {
       std::string words = fmt::format("{} in {} step{} per tick", render::name_of(steps.integrator),
@@ -128,13 +130,13 @@ std::vector<Knob> knobs_of(const Scene& scene) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     if (leaves_surface_open(object)) {
-      // What cannot be touched is told by who builds it.
+      // Objects that cannot be touched are reported when their force law is built.
       if (const auto turn = turn_of(object)) {
         knobs.push_back({i,
                          fmt::format(" (its faces turn by {:.2g} degrees over an edge{})",
                                      *turn * 180 / std::numbers::pi,
-                                     *turn > kBeyond * quality_table().contacts.front().turn
-                                         ? ", more than any that was measured"
+                                     *turn > kTurnMargin * quality_table().contacts.front().turn
+                                         ? ", more than on any measured mesh"
                                          : ""),
                          contacts_for(object, *turn)});
       }
@@ -145,7 +147,7 @@ std::vector<Knob> knobs_of(const Scene& scene) {
   return knobs;
 }
 
-// The cheapest point that errs by no more than `error`; nullptr if none does.
+// Returns the cheapest setting with an error of at most `error`; nullptr if there is none.
 const Candidate* cheapest(const Knob& knob, double error) {
   const Candidate* found = nullptr;
   for (const Candidate& one : knob.candidates) {
@@ -156,17 +158,18 @@ const Candidate* cheapest(const Knob& knob, double error) {
   return found;
 }
 
-double least_error(const Knob& knob) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Candidate& one : knob.candidates) least = std::min(least, one.error);
-  return least;
+double min_error(const Knob& knob) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Candidate& one : knob.candidates) smallest = std::min(smallest, one.error);
+  return smallest;
 }
 
-// The cheapest points at which no knob errs by more than `error`, or by more than its truest.
+// Returns the cheapest settings at which the error of no choice exceeds `error`, or its smallest
+// possible error.
 std::vector<const Candidate*> points_at(const std::vector<Knob>& knobs, double error) {
   std::vector<const Candidate*> points;
   for (const Knob& knob : knobs) {
-    points.push_back(cheapest(knob, std::max(error, least_error(knob))));
+    points.push_back(cheapest(knob, std::max(error, min_error(knob))));
   }
   return points;
 }
@@ -177,8 +180,8 @@ double cost_of(const std::vector<const Candidate*>& points) {
   return ns;
 }
 
-// The points whose largest error is the smallest that the budget pays for; the cheapest if it pays
-// for none.
+// Returns the settings with the smallest largest error within the budget; the cheapest settings if
+// none is within it.
 std::vector<const Candidate*> best_within(const std::vector<Knob>& knobs, double budget) {
   std::vector<double> errors;
   for (const Knob& knob : knobs) {
@@ -204,35 +207,36 @@ bool leaves_surface_open(const SceneObject& object) {
 std::vector<std::string> choose_quality(Scene& scene, std::optional<double> budget) {
   const std::vector<Knob> knobs = knobs_of(scene);
   const auto points = budget ? best_within(knobs, *budget) : points_at(knobs, 1);
-  std::vector<std::string> said;
+  std::vector<std::string> notes;
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     SceneObject& object = scene.objects[knobs[i].object];
     points[i]->choose(object);
-    said.push_back(fmt::format("{}: {}{}: {:.0f} ns per tick, wrong by {:.2g} % of what is felt.",
-                               object.name, points[i]->words, knobs[i].where, points[i]->ns,
-                               100 * points[i]->error));
+    notes.push_back(fmt::format("{}: {}{}: {:.0f} ns per tick, error {:.2g} % of what can be felt.",
+                                object.name, points[i]->words, knobs[i].where, points[i]->ns,
+                                100 * points[i]->error));
   }
   const double ns = cost_of(points);
   const std::string machine =
       fmt::format("measured on {}, table {}", quality_table().measured, quality_table().version);
   if (knobs.empty()) {
-    said.emplace_back(
-        "Nothing to choose: no object leaves open how a mesh is felt or stepped; shapes, fields "
-        "and "
-        "frictions are as the scene says.");
+    notes.emplace_back(
+        "Nothing to choose: no object leaves its contact or its dent open; shapes, fields and "
+        "frictions stay as in the scene.");
   } else if (!budget) {
-    said.push_back(fmt::format(
-        "The cheapest points at which nothing wrong can be felt, {:.0f} ns per tick in all ({}).",
-        ns, machine));
+    notes.push_back(
+        fmt::format("The cheapest settings without an error that can be felt: {:.0f} ns per tick "
+                    "in total ({}).",
+                    ns, machine));
   } else if (ns <= *budget) {
-    said.push_back(fmt::format("The truest points for {:.0f} of the {:.0f} ns per tick ({}).", ns,
-                               *budget, machine));
+    notes.push_back(
+        fmt::format("The most accurate settings for {:.0f} of the {:.0f} ns per tick ({}).", ns,
+                    *budget, machine));
   } else {
-    said.push_back(fmt::format(
-        "Nothing fits in {:.0f} ns per tick: these are the cheapest points, {:.0f} ns ({}).",
-        *budget, ns, machine));
+    notes.push_back(fmt::format(
+        "Nothing fits into {:.0f} ns per tick; the cheapest settings take {:.0f} ns ({}).", *budget,
+        ns, machine));
   }
-  return said;
+  return notes;
 }
 
 }  // namespace thimble::scene

@@ -26,7 +26,8 @@ const QualityTable& quality_table() {
 }
 
 double typical_turn(const render::ContactMesh& mesh) {
-  constexpr double kShare = 0.9;  // of the edges [chosen: a few bad ones are not what is felt]
+  constexpr double kShare =
+      0.9;  // fraction of the edges [chosen: a few bad edges do not decide the feel]
   std::vector<double> turns;
   for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
     for (const std::int32_t other : mesh.cell(t).neighbours) {

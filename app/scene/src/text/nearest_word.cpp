@@ -10,7 +10,7 @@ char lower(char letter) {
   return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
 }
 
-/// Returns by how many letters two words differ, where swapped neighbours count once (optimal
+/// Returns the number of letters in which two words differ. Swapped neighbours count once (optimal
 /// string alignment distance).
 std::size_t letters_apart(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
@@ -39,7 +39,7 @@ std::optional<std::string> nearest_word(std::string_view word,
     const std::size_t longer = std::max(word.size(), candidate.size());
     const std::size_t shorter = std::min(word.size(), candidate.size());
     if (longer - shorter >= bound) continue;
-    // Words of which nothing is left are not alike.
+    // Words without a common letter are not similar.
     const std::size_t apart = letters_apart(word, candidate);
     if (apart >= bound || apart >= longer) continue;
     bound = apart;

@@ -15,9 +15,9 @@
 namespace thimble::scene {
 namespace {
 
-constexpr std::uintmax_t kFileSizeMax = 4u << 20;  // chosen: 1000 times our largest scene
+constexpr std::uintmax_t kFileSizeMax = 4u << 20;  // [chosen: 1000 times our largest scene]
 
-/// Hears where documents begin, and nothing else.
+/// Event handler that records only the line at which the last document begins.
 class DocumentStarts final : public YAML::EventHandler {
  public:
   void OnDocumentStart(const YAML::Mark& mark) override { line_ = mark.line + 1; }
@@ -39,9 +39,9 @@ class DocumentStarts final : public YAML::EventHandler {
   int line_ = 0;
 };
 
-/// Tells in which line a second document begins; 0 if there is none. To load all would never end
-/// where the parser stands still: before a comma outside of any list it finds one empty document
-/// after the other. Throws what yaml-cpp throws.
+/// Returns the line in which a second document begins; 0 if there is none. Loading all documents
+/// might not terminate: before a comma outside of any list, the parser makes no progress and
+/// returns one empty document after the other. Throws the exceptions of yaml-cpp.
 int line_of_second_document(const std::string& text) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);
@@ -57,12 +57,12 @@ std::string in_file(const std::string& file, int line, const std::string& senten
   return place + ": " + sentence + ".";
 }
 
-/// Warns the user, but not again of what this process has told him: studies read a scene often.
-void tell_once(const std::string& warning) {
+/// Warns the user once per process of each warning, because studies read a scene often.
+void warn_once(const std::string& warning) {
   static std::mutex mutex;
-  static std::set<std::string> told;
+  static std::set<std::string> warned;
   const std::lock_guard lock(mutex);
-  if (told.insert(warning).second) logger().warn(warning);
+  if (warned.insert(warning).second) logger().warn(warning);
 }
 
 }  // namespace
@@ -133,7 +133,7 @@ driver::Result<YamlFile> YamlFile::load(const std::filesystem::path& file) {
   if (!text) {
     std::error_code status;
     if (driver::is_regular(file) && std::filesystem::file_size(file, status) > kFileSizeMax) {
-      return driver::Error{name + ": is larger than 4 MB, so it cannot be a scene or an arm."};
+      return driver::Error{name + ": is larger than 4 MB, so it cannot be a scene or an arm file."};
     }
     return driver::Error{file.string() + ": " + text.error().message};
   }
@@ -151,7 +151,7 @@ driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::str
     const int second = line_of_second_document(text);
     const YAML::Node document = second > 0 ? YAML::Node() : YAML::Load(text);
     if (second > 0) {
-      mistakes->add(second, "expected one document, found a second one");
+      mistakes->add(second, "expected one document, found a second one; remove it");
     } else if (document.IsNull()) {
       mistakes->add(0, "is empty; expected a map of keys and values");
     } else {
@@ -160,7 +160,7 @@ driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::str
     }
   } catch (const YAML::Exception& problem) {
     mistakes->add_syntax_error(problem.mark.is_null() ? 0 : problem.mark.line + 1,
-                               "is not proper YAML (" + problem.msg + ")");
+                               "is not valid YAML (" + problem.msg + ")");
   } catch (const std::exception& problem) {
     mistakes->add(0, std::string("cannot be read (") + problem.what() + ")");
   }
@@ -168,7 +168,7 @@ driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::str
 }
 
 driver::Result<void> YamlFile::finish() const {
-  for (const std::string& warning : mistakes_->warnings()) tell_once(warning);
+  for (const std::string& warning : mistakes_->warnings()) warn_once(warning);
   if (mistakes_->empty()) return {};
   return driver::Error{mistakes_->text()};
 }

@@ -14,6 +14,17 @@
 #include "yaml/yaml_words.h"
 
 namespace thimble::scene {
+namespace {
+
+KeyValues whole_values(ValueType type, std::int64_t min, std::int64_t max) {
+  return {type, static_cast<double>(min), static_cast<double>(max)};
+}
+
+KeyValues choice_values(ValueType type, const std::vector<std::string_view>& choices) {
+  return {.type = type, .choices = {choices.begin(), choices.end()}};
+}
+
+}  // namespace
 
 YamlMap::YamlMap(const YAML::Node& node, std::string_view name, int line,
                  std::shared_ptr<YamlMistakes> mistakes)
@@ -24,7 +35,7 @@ YamlMap::YamlMap(const YAML::Node& node, std::string_view name, int line,
     mistakes_->add(line_, prefix + "expected a map of keys and values, found " + found(node));
     return;
   }
-  std::unordered_map<std::string_view, int> lines;  // of the keys, which `node` keeps
+  std::unordered_map<std::string_view, int> lines;  // by key; `node` owns the texts
   for (const auto& pair : node) {
     const int key_line = line_of(pair.first, line_);
     if (!pair.first.IsScalar()) {
@@ -34,7 +45,7 @@ YamlMap::YamlMap(const YAML::Node& node, std::string_view name, int line,
     const std::string& key = pair.first.Scalar();
     const auto [first, fresh] = lines.try_emplace(key, key_line);
     if (!fresh) {
-      mistakes_->add(key_line, key + ": stands twice, first in line " +
+      mistakes_->add(key_line, key + ": occurs twice, first in line " +
                                    std::to_string(first->second) + "; keep one of them");
       continue;
     }
@@ -43,7 +54,8 @@ YamlMap::YamlMap(const YAML::Node& node, std::string_view name, int line,
 }
 
 const YamlMap::Entry* YamlMap::find(std::string_view key, bool required) {
-  if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.emplace_back(key);
+  if (std::find(requested_.begin(), requested_.end(), key) == requested_.end())
+    requested_.emplace_back(key);
   for (const Entry& entry : entries_) {
     if (entry.key == key) return &entry;
   }
@@ -51,20 +63,25 @@ const YamlMap::Entry* YamlMap::find(std::string_view key, bool required) {
     if (renamed.place != place_ || renamed.is != key) continue;
     for (Entry& entry : entries_) {
       if (entry.key != renamed.was) continue;
-      mistakes_->warn(entry.line, entry.key + ": is called " + std::string(key) +
-                                      " now; the old name still works, but write the new one");
+      mistakes_->warn(entry.line, entry.key + ": is now called " + std::string(key) +
+                                      "; the old name still works, but use the new one");
       entry.key = key;
       return &entry;
     }
   }
-  if (required && !quiet_) mistakes_->add(line_, std::string(key) + ": is missing here");
+  if (required && !quiet_) mistakes_->add(line_, std::string(key) + ": is missing");
   return nullptr;
 }
 
-void YamlMap::note(std::string_view key, std::string what, bool required, std::string fallback) {
+void YamlMap::note(std::string_view key, KeyValues values, std::string what, bool required,
+                   std::string fallback) {
   if (mistakes_->keys() == nullptr) return;
-  mistakes_->keys()->note(
-      {place_, std::string(key), std::move(what), required, std::move(fallback)});
+  mistakes_->keys()->note({.place = place_,
+                           .key = std::string(key),
+                           .what = std::move(what),
+                           .need = required ? KeyNeed::kRequired : KeyNeed::kOptional,
+                           .fallback = std::move(fallback),
+                           .values = std::move(values)});
 }
 
 int YamlMap::key_line(std::string_view key) const {
@@ -82,7 +99,7 @@ void YamlMap::expected(const Entry& entry, const std::string& what) {
 bool YamlMap::read_number(const Entry& entry, const YAML::Node& node, const std::string& what,
                           double min, double max, double& number) {
   const std::optional<double> value = to_number(node);
-  // Written so that NaN is refused.
+  // Written so that NaN is rejected.
   if (value && *value >= min && *value <= max) {
     number = *value;
     return true;
@@ -105,13 +122,13 @@ bool YamlMap::read_whole(const Entry& entry, const YAML::Node& node, const std::
 }
 
 bool YamlMap::has(std::string_view key) {
-  if (mistakes_->keys() != nullptr && mistakes_->keys()->looked(place_, key)) return true;
+  if (mistakes_->keys() != nullptr && mistakes_->keys()->checked(place_, key)) return true;
   return find(key, false) != nullptr;
 }
 
 double YamlMap::require_number(std::string_view key, std::string_view unit, double min,
                                double max) {
-  note(key, number_in_words(unit, min, max), true);
+  note(key, {ValueType::kNumber, min, max}, number_in_words(unit, min, max), true);
   double number = min;
   if (const Entry* entry = find(key, true)) {
     read_number(*entry, entry->value, number_in_words(unit, min, max), min, max, number);
@@ -121,14 +138,15 @@ double YamlMap::require_number(std::string_view key, std::string_view unit, doub
 
 double YamlMap::optional_number(std::string_view key, double fallback, std::string_view unit,
                                 double min, double max) {
-  note(key, number_in_words(unit, min, max), false, in_words(fallback));
+  note(key, {ValueType::kNumber, min, max}, number_in_words(unit, min, max), false,
+       in_words(fallback));
   return has(key) ? require_number(key, unit, min, max) : fallback;
 }
 
 std::int64_t YamlMap::require_whole(std::string_view key, std::string_view unit, std::int64_t min,
                                     std::int64_t max) {
   const std::string what = whole_in_words(unit, min, max);
-  note(key, what, true);
+  note(key, whole_values(ValueType::kWhole, min, max), what, true);
   std::int64_t number = min;
   if (const Entry* entry = find(key, true)) {
     read_whole(*entry, entry->value, what, min, max, number);
@@ -138,7 +156,8 @@ std::int64_t YamlMap::require_whole(std::string_view key, std::string_view unit,
 
 std::int64_t YamlMap::optional_whole(std::string_view key, std::int64_t fallback,
                                      std::string_view unit, std::int64_t min, std::int64_t max) {
-  note(key, whole_in_words(unit, min, max), false, std::to_string(fallback));
+  note(key, whole_values(ValueType::kWhole, min, max), whole_in_words(unit, min, max), false,
+       std::to_string(fallback));
   return has(key) ? require_whole(key, unit, min, max) : fallback;
 }
 
@@ -154,7 +173,8 @@ std::array<std::int64_t, 3> YamlMap::require_three_whole(std::string_view key,
                                                          std::string_view unit, std::int64_t min,
                                                          std::int64_t max) {
   const std::string what = whole_in_words(unit, min, max);
-  note(key, "three whole numbers, each" + what.substr(14), true);
+  note(key, whole_values(ValueType::kThreeWhole, min, max),
+       "three whole numbers, each" + what.substr(14), true);
   std::array<std::int64_t, 3> numbers{};
   const Entry* entry = find_three(key, "whole numbers");
   for (std::size_t i = 0; entry != nullptr && i < 3; ++i) {
@@ -166,14 +186,15 @@ std::array<std::int64_t, 3> YamlMap::require_three_whole(std::string_view key,
 std::array<std::int64_t, 3> YamlMap::optional_three_whole(
     std::string_view key, const std::array<std::int64_t, 3>& fallback, std::string_view unit,
     std::int64_t min, std::int64_t max) {
-  note(key, "three whole numbers, each" + whole_in_words(unit, min, max).substr(14), false,
+  note(key, whole_values(ValueType::kThreeWhole, min, max),
+       "three whole numbers, each" + whole_in_words(unit, min, max).substr(14), false,
        '[' + std::to_string(fallback[0]) + ", " + std::to_string(fallback[1]) + ", " +
            std::to_string(fallback[2]) + ']');
   return has(key) ? require_three_whole(key, unit, min, max) : fallback;
 }
 
 std::array<std::int64_t, 3> YamlMap::require_signs(std::string_view key) {
-  note(key, "three signs, each 1 or -1", true);
+  note(key, {ValueType::kSigns}, "three signs, each 1 or -1", true);
   const Entry* entry = find_three(key, "signs, each 1 or -1");
   std::array<std::int64_t, 3> signs{1, 1, 1};
   for (std::size_t i = 0; entry != nullptr && i < 3; ++i) {
@@ -191,7 +212,7 @@ std::array<std::int64_t, 3> YamlMap::require_signs(std::string_view key) {
 
 Eigen::Vector3d YamlMap::require_vector3(std::string_view key, std::string_view unit, double min,
                                          double max) {
-  note(key, three_in_words(unit, min, max), true);
+  note(key, {ValueType::kThreeNumbers, min, max}, three_in_words(unit, min, max), true);
   Eigen::Vector3d vector = Eigen::Vector3d::Zero();
   const Entry* entry =
       find_three(key, "numbers" + (unit.empty() ? "" : " in " + std::string(unit)));
@@ -208,15 +229,15 @@ Eigen::Vector3d YamlMap::require_vector3(std::string_view key, std::string_view 
 
 Eigen::Vector3d YamlMap::optional_vector3(std::string_view key, const Eigen::Vector3d& fallback,
                                           std::string_view unit, double min, double max) {
-  note(key, three_in_words(unit, min, max), false,
+  note(key, {ValueType::kThreeNumbers, min, max}, three_in_words(unit, min, max), false,
        '[' + in_words(fallback.x()) + ", " + in_words(fallback.y()) + ", " +
            in_words(fallback.z()) + ']');
   return has(key) ? require_vector3(key, unit, min, max) : fallback;
 }
 
 Eigen::Matrix3d YamlMap::optional_rotation(std::string_view key) {
-  const std::string what = "a list of turns such as [[x, 90], [z, -45]], in degrees";
-  note(key, what, false, "no turn");
+  const std::string what = "a list of rotations such as [[x, 90], [z, -45]], in degrees";
+  note(key, {ValueType::kRotation}, what, false, "no rotation");
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   const Entry* entry = find(key, false);
   if (entry == nullptr) return R;
@@ -244,7 +265,7 @@ Eigen::Matrix3d YamlMap::optional_rotation(std::string_view key) {
 }
 
 std::string YamlMap::require_string(std::string_view key) {
-  note(key, "a text", true);
+  note(key, {ValueType::kText}, "a text", true);
   const Entry* entry = find(key, true);
   if (entry == nullptr) return "";
   if (!entry->value.IsScalar() || entry->value.Scalar().empty()) {
@@ -255,13 +276,13 @@ std::string YamlMap::require_string(std::string_view key) {
 }
 
 std::string YamlMap::optional_string(std::string_view key, std::string_view fallback) {
-  note(key, "a text", false, std::string(fallback));
+  note(key, {ValueType::kText}, "a text", false, std::string(fallback));
   return has(key) ? require_string(key) : std::string(fallback);
 }
 
 std::size_t YamlMap::require_choice(std::string_view key,
                                     const std::vector<std::string_view>& choices) {
-  note(key, any_of(choices), true);
+  note(key, choice_values(ValueType::kChoice, choices), any_of(choices), true);
   const Entry* entry = find(key, true);
   if (entry == nullptr) return 0;
   if (const auto chosen = choice_of(entry->value, choices)) return *chosen;
@@ -272,7 +293,8 @@ std::size_t YamlMap::require_choice(std::string_view key,
 std::vector<std::size_t> YamlMap::optional_choices(std::string_view key,
                                                    const std::vector<std::size_t>& fallback,
                                                    const std::vector<std::string_view>& choices) {
-  note(key, any_of(choices) + ", or a list of such", false);
+  const std::string what = any_of(choices) + ", or a list of them";
+  note(key, choice_values(ValueType::kChoices, choices), what, false);
   const Entry* entry = find(key, false);
   if (entry == nullptr) return fallback;
   std::vector<std::size_t> chosen;
@@ -288,19 +310,19 @@ std::vector<std::size_t> YamlMap::optional_choices(std::string_view key,
       chosen.push_back(*one);
     }
   }
-  if (chosen.empty()) expected(*entry, any_of(choices) + ", or a list of such");
+  if (chosen.empty()) expected(*entry, what);
   return chosen;
 }
 
 std::size_t YamlMap::optional_choice(std::string_view key, std::size_t fallback,
                                      const std::vector<std::string_view>& choices) {
-  note(key, any_of(choices), false,
+  note(key, choice_values(ValueType::kChoice, choices), any_of(choices), false,
        fallback < choices.size() ? std::string(choices[fallback]) : "");
   return has(key) ? require_choice(key, choices) : fallback;
 }
 
 bool YamlMap::optional_bool(std::string_view key, bool fallback) {
-  note(key, "true or false", false, fallback ? "true" : "false");
+  note(key, {ValueType::kBool}, "true or false", false, fallback ? "true" : "false");
   const Entry* entry = find(key, false);
   if (entry == nullptr) return fallback;
   if (is_plain_scalar(entry->value)) {
@@ -312,7 +334,7 @@ bool YamlMap::optional_bool(std::string_view key, bool fallback) {
 }
 
 YamlMap YamlMap::require_map(std::string_view key) {
-  note(key, "a map", true);
+  note(key, {ValueType::kMap}, "a map", true);
   const std::string place = place_.empty() ? std::string(key) : place_ + '.' + std::string(key);
   if (const Entry* entry = find(key, true)) {
     YamlMap map(entry->value, key, entry->line, mistakes_);
@@ -326,14 +348,14 @@ YamlMap YamlMap::require_map(std::string_view key) {
 }
 
 std::vector<YamlMap> YamlMap::require_maps(std::string_view key) {
-  note(key, "a list of maps, one at least", true);
+  note(key, {ValueType::kMaps}, "a list of maps, at least one", true);
   const std::string place =
       (place_.empty() ? std::string(key) : place_ + '.' + std::string(key)) + "[]";
   std::vector<YamlMap> maps;
   const Entry* entry = find(key, true);
   if (entry == nullptr) {
     if (mistakes_->keys() == nullptr) return maps;
-    // An entry whose keys are asked for, so that they are noted.
+    // An entry without values, so that its keys are requested and logged.
     maps.emplace_back(YAML::Node(YAML::NodeType::Map), key, line_, mistakes_);
     maps.back().quiet_ = true;
     maps.back().place_ = place;
@@ -364,10 +386,11 @@ void YamlMap::refuse(std::string_view key, const std::string& sentence) {
 }
 
 void YamlMap::finish() {
+  if (mistakes_->keys() != nullptr) mistakes_->keys()->finished(place_, requested_);
   for (const Entry& entry : entries_) {
-    if (std::find(asked_.begin(), asked_.end(), entry.key) != asked_.end()) continue;
-    std::string sentence = entry.key + ": is no key that is known here";
-    if (mistakes_->full()) {  // it is only counted
+    if (std::find(requested_.begin(), requested_.end(), entry.key) != requested_.end()) continue;
+    std::string sentence = entry.key + ": unknown key";
+    if (mistakes_->full()) {  // only counted from here on
       mistakes_->add(entry.line, sentence);
       continue;
     }
@@ -375,10 +398,10 @@ void YamlMap::finish() {
       if (renamed.place != place_ || renamed.was != entry.key || key_line(renamed.is) == 0)
         continue;
       sentence = entry.key + ": is the old name of " + std::string(renamed.is) +
-                 ", which stands here too; keep the new one";
+                 ", which is here too; keep the new one";
     }
-    const auto near = nearest_word(entry.key, asked_);
-    if (near) sentence += "; perhaps " + in_quotes(*near) + " was meant";
+    const auto near = nearest_word(entry.key, requested_);
+    if (near) sentence += " (did you mean " + in_quotes(*near) + "?)";
     mistakes_->add(entry.line, sentence);
   }
 }

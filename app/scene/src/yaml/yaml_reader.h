@@ -203,7 +203,8 @@ class YamlMap {
   };
 
   const Entry* find(std::string_view key, bool required);
-  void note(std::string_view key, std::string what, bool required, std::string fallback = {});
+  void note(std::string_view key, KeyValues values, std::string what, bool required,
+            std::string fallback = {});
   void expected(const Entry& entry, const std::string& what);
   bool read_number(const Entry& entry, const YAML::Node& node, const std::string& what, double min,
                    double max, double& number);
@@ -213,7 +214,7 @@ class YamlMap {
   int line_for(std::string_view key);
 
   std::vector<Entry> entries_;
-  std::vector<std::string> asked_;
+  std::vector<std::string> requested_;
   std::shared_ptr<YamlMistakes> mistakes_;
   int line_ = 0;
   std::string place_;

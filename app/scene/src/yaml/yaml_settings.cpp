@@ -7,24 +7,22 @@ namespace thimble::scene {
 
 void YamlSettings::number(std::string_view key, double& value, const render::NumberLimits& limits) {
   if (limits.whole) {
-    const auto least = static_cast<std::int64_t>(limits.least);
-    const auto most = static_cast<std::int64_t>(limits.most);
+    const auto min = static_cast<std::int64_t>(limits.min);
+    const auto max = static_cast<std::int64_t>(limits.max);
     value = static_cast<double>(
         limits.required
-            ? map_.require_whole(key, limits.unit, least, most)
-            : map_.optional_whole(key, static_cast<std::int64_t>(value), limits.unit, least, most));
+            ? map_.require_whole(key, limits.unit, min, max)
+            : map_.optional_whole(key, static_cast<std::int64_t>(value), limits.unit, min, max));
     return;
   }
-  value = limits.required
-              ? map_.require_number(key, limits.unit, limits.least, limits.most)
-              : map_.optional_number(key, value, limits.unit, limits.least, limits.most);
+  value = limits.required ? map_.require_number(key, limits.unit, limits.min, limits.max)
+                          : map_.optional_number(key, value, limits.unit, limits.min, limits.max);
 }
 
 void YamlSettings::vector(std::string_view key, Eigen::Vector3d& value,
                           const render::NumberLimits& limits) {
-  value = limits.required
-              ? map_.require_vector3(key, limits.unit, limits.least, limits.most)
-              : map_.optional_vector3(key, value, limits.unit, limits.least, limits.most);
+  value = limits.required ? map_.require_vector3(key, limits.unit, limits.min, limits.max)
+                          : map_.optional_vector3(key, value, limits.unit, limits.min, limits.max);
 }
 
 void YamlSettings::choice(std::string_view key, std::size_t& value,

@@ -12,15 +12,15 @@
 namespace thimble::scene {
 namespace {
 
-/// Returns whether a text is UTF-16 or UTF-32: by its mark, or by the zeros of its first character
-/// [YAML 1.2, 5.2].
+/// Returns whether a text is UTF-16 or UTF-32, by its byte order mark or by zero bytes in its first
+/// character [YAML 1.2, 5.2].
 bool is_wide(std::string_view text) {
   const std::string_view head = text.substr(0, 4);
   return head.starts_with("\xff\xfe") || head.starts_with("\xfe\xff") ||
          head.find('\0') != std::string_view::npos;
 }
 
-/// Where a text is read, character by character.
+/// Position in a text that is read character by character.
 struct Place {
   int line = 1, column = 1;
 
@@ -33,7 +33,7 @@ struct Place {
   }
 };
 
-/// A blank that is none for YAML.
+/// A blank character that YAML does not accept as one.
 struct OddBlank {
   std::string_view bytes;
   std::string_view name;
@@ -59,9 +59,9 @@ bool is_blank(std::string_view character) {
   return character == " " || character == "\t" || odd_blank(character) != nullptr;
 }
 
-/// Returns what follows the blanks at the beginning of a text, of which the first hundred are
-/// looked at; "" at its end.
-std::string_view behind_blanks(std::string_view text) {
+/// Skips the blanks at the beginning of a text, at most a hundred. Returns the rest; "" at the end
+/// of the text.
+std::string_view skip_blanks(std::string_view text) {
   for (int passed = 0; passed < 100 && !text.empty(); ++passed) {
     const std::string_view character = text.substr(0, std::max<std::size_t>(utf8_length(text), 1));
     if (!is_blank(character)) break;
@@ -74,12 +74,12 @@ bool begins_with_any(std::string_view text, std::string_view letters) {
   return text.empty() || letters.find(text[0]) != std::string_view::npos;
 }
 
-/// Follows quotes, comments and brackets through a YAML text.
+/// Tracks quotes, comments and brackets while passing through a YAML text.
 class BlankSearch {
  public:
   explicit BlankSearch(std::string_view text) : text_(text) {}
 
-  /// Passes one character. Returns a flaw if it is a blank that is misplaced.
+  /// Passes one character. Returns a flaw if it is a misplaced blank.
   std::optional<TextFlaw> next() {
     const std::string_view character =
         text_.substr(0, std::max<std::size_t>(utf8_length(text_), 1));
@@ -123,15 +123,15 @@ class BlankSearch {
 
   std::optional<TextFlaw> pass_plain(std::string_view character, std::string_view rest) {
     if (character == "\t") {
-      // Tabs may stand between brackets and in empty lines.
-      if (!indentation_ || depth_ > 0 || begins_with_any(behind_blanks(rest), "\r\n#")) return {};
-      return TextFlaw{.what = "a tab cannot indent in YAML; write spaces instead", .indents = true};
+      // Tabs are allowed between brackets and in empty lines.
+      if (!indentation_ || depth_ > 0 || begins_with_any(skip_blanks(rest), "\r\n#")) return {};
+      return TextFlaw{.what = "a tab cannot indent in YAML; use spaces instead", .indents = true};
     }
     if (const OddBlank* odd = odd_blank(character)) {
-      const bool at_end = begins_with_any(behind_blanks(rest), "\r\n#,]}:");
+      const bool at_end = begins_with_any(skip_blanks(rest), "\r\n#,]}:");
       if (!indentation_ && !after_sign_ && !at_end) return {};
       return TextFlaw{
-          .what = fmt::format("{} is no blank in YAML; write a space instead", odd->name),
+          .what = fmt::format("{} is not a blank in YAML; use a space instead", odd->name),
           .indents = indentation_};
     }
     if (character == " ") return {};
@@ -139,7 +139,7 @@ class BlankSearch {
       comment_ = true;
       return {};
     }
-    // Quotes begin a value; inside of a word they are letters.
+    // Quotes begin a value; within a word they are letters.
     if (after_sign_ && (character == "\"" || character == "'")) quote_ = character[0];
     depth_ += begins_with_any(character, "[{") ? 1 : 0;
     depth_ -= depth_ > 0 && begins_with_any(character, "]}") ? 1 : 0;
@@ -151,12 +151,12 @@ class BlankSearch {
   std::string_view text_;
   std::string_view before_ = "\n";
   Place place_;
-  bool indentation_ = true;  // only blanks so far in this line
-  bool after_sign_ = true;   // only blanks since a sign behind which YAML expects a blank
+  bool indentation_ = true;  // true: only blanks so far in this line
+  bool after_sign_ = true;   // true: only blanks since a sign that YAML requires a blank after
   bool comment_ = false;
-  bool escaped_ = false;  // the next character is part of a pair in quotes
-  char quote_ = 0;        // inside of these quotes
-  int depth_ = 0;         // of brackets
+  bool escaped_ = false;  // the next character is the second of an escaped pair in quotes
+  char quote_ = 0;        // quote character that is open; 0: none
+  int depth_ = 0;         // number of open brackets
 };
 
 }  // namespace
@@ -167,10 +167,11 @@ std::optional<TextFlaw> find_invalid_utf8(std::string_view text) {
   while (!text.empty()) {
     const std::size_t length = utf8_length(text);
     if (length == 0) {
-      return TextFlaw{place.line, place.column,
-                      fmt::format("the byte 0x{:02X} is not UTF-8; save the file as UTF-8, it may "
-                                  "be Latin-1 (iconv -f latin1 -t utf8)",
-                                  static_cast<std::uint8_t>(text[0]))};
+      return TextFlaw{
+          place.line, place.column,
+          fmt::format("the byte 0x{:02X} is not UTF-8; save the file as UTF-8 (it may be "
+                      "Latin-1: iconv -f latin1 -t utf8)",
+                      static_cast<std::uint8_t>(text[0]))};
     }
     place.pass(text.substr(0, length));
     text.remove_prefix(length);
@@ -179,11 +180,11 @@ std::optional<TextFlaw> find_invalid_utf8(std::string_view text) {
 }
 
 std::vector<TextFlaw> find_misplaced_blanks(std::string_view text) {
-  constexpr std::size_t kMost = 100;
+  constexpr std::size_t kFlawsMax = 100;
   std::vector<TextFlaw> flaws;
   if (is_wide(text)) return flaws;
   BlankSearch search(text);
-  while (!search.at_end() && flaws.size() < kMost) {
+  while (!search.at_end() && flaws.size() < kFlawsMax) {
     if (auto flaw = search.next()) flaws.push_back(*std::move(flaw));
   }
   return flaws;

@@ -9,12 +9,13 @@
 namespace thimble::scene {
 namespace {
 
-constexpr std::size_t kFoundLengthMax = 40;  // chosen: what fits beside the rest of a line
+constexpr std::size_t kFoundLengthMax =
+    40;  // [chosen: fits into a line with the rest of the message]
 
 }  // namespace
 
 int line_of(const YAML::Node& node, int fallback) {
-  // A value left out is marked where the parser noticed it, which may be the line below.
+  // The parser marks a missing value where it detected it, which may be the next line.
   if (node.IsNull()) return fallback;
   const YAML::Mark mark = node.Mark();
   return mark.is_null() ? fallback : mark.line + 1;
@@ -23,7 +24,7 @@ int line_of(const YAML::Node& node, int fallback) {
 std::string in_quotes(std::string_view text) {
   std::string result = "\"";
   std::size_t length = std::min(text.size(), kFoundLengthMax);
-  // Not in the middle of a character [RFC 3629].
+  // Never splits a character [RFC 3629].
   while (length < text.size() && length > 0 && (text[length] & 0xc0) == 0x80) --length;
   for (const char c : text.substr(0, length)) {
     result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
@@ -60,7 +61,7 @@ std::string number_in_words(std::string_view unit, double min, double max) {
   return text;
 }
 
-// yaml-cpp marks a scalar that stood in quotes with the tag "!"; such a one is a text.
+// yaml-cpp gives a scalar in quotes the tag "!"; such a scalar is always a text.
 bool is_plain_scalar(const YAML::Node& node) {
   return node.IsScalar() && node.Tag() != "!";
 }
@@ -76,7 +77,8 @@ std::optional<double> to_number(const YAML::Node& node) {
 }
 
 std::optional<std::int64_t> to_whole(const YAML::Node& node) {
-  constexpr std::int64_t kMost = std::int64_t{1} << 53;  // up to here each is a double as well
+  constexpr std::int64_t kExactIntegerMax = std::int64_t{1}
+                                            << 53;  // up to here every integer is a double
   if (!is_plain_scalar(node)) return std::nullopt;
   std::string_view text = node.Scalar();
   if (text.starts_with('+')) text.remove_prefix(1);
@@ -84,13 +86,15 @@ std::optional<std::int64_t> to_whole(const YAML::Node& node) {
   const char* const last = text.data() + text.size();
   if (const auto [end, status] = std::from_chars(text.data(), last, number);
       end != last || status != std::errc()) {
-    // 1e3 and 7.0 are whole. The limit is exclusive: what is above may have been rounded to it.
+    // 1e3 and 7.0 are integers. The limit is exclusive, because a larger value may have been
+    // rounded to it.
     const std::optional<double> decimal = to_number(node);
-    if (!decimal || !(std::abs(*decimal) < static_cast<double>(kMost))) return std::nullopt;
+    if (!decimal || !(std::abs(*decimal) < static_cast<double>(kExactIntegerMax)))
+      return std::nullopt;
     if (*decimal != std::floor(*decimal)) return std::nullopt;
     number = static_cast<std::int64_t>(*decimal);
   }
-  if (number > kMost || number < -kMost) return std::nullopt;
+  if (number > kExactIntegerMax || number < -kExactIntegerMax) return std::nullopt;
   return number;
 }
 

@@ -10,7 +10,7 @@ namespace thimble::session {
 namespace {
 
 // Chosen: short enough for a user who follows the log.
-constexpr std::chrono::milliseconds kBetweenLooks(50);
+constexpr std::chrono::milliseconds kCheckInterval(50);
 
 }  // namespace
 
@@ -27,7 +27,7 @@ EventLog::EventLog(LoggedRun run, const driver::Device& device)
   writer_ = std::thread([this] {
     while (!stop_.load()) {
       serve();
-      std::this_thread::sleep_for(kBetweenLooks);
+      std::this_thread::sleep_for(kCheckInterval);
     }
   });
 }
@@ -62,9 +62,9 @@ void EventLog::serve() noexcept {
       ring_.drop(events.size());
     }
     const std::uint64_t lost = watch_.lost();
-    if (lost == lost_told_) return;
-    log_->warn("{} events were lost because the log could not keep up.", lost - lost_told_);
-    lost_told_ = lost;
+    if (lost == lost_reported_) return;
+    log_->warn("{} events were lost because the log could not keep up.", lost - lost_reported_);
+    lost_reported_ = lost;
   } catch (const std::exception&) {
     // Out of memory: drops the events. An event that cannot be logged must not end the run.
     ring_.drop(ring_.front().size());

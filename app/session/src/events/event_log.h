@@ -65,7 +65,7 @@ class EventLog final : public TickObserver {
   DeviceCounters counters_;
   SpscRing<TickEvent> ring_{kRingEvents};
   EventWatch watch_;
-  std::uint64_t lost_told_ = 0;
+  std::uint64_t lost_reported_ = 0;
   // Notices printed on the console so far: that a stage acts, and that it changes the force.
   std::array<std::array<bool, kActivities>, 2> given_{};
   std::atomic<bool> stop_{false};

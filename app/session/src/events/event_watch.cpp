@@ -17,7 +17,7 @@ double wall_force_squared(const std::array<double, 3>& f_W) noexcept {
 std::uint64_t DeviceCounters::changes() const noexcept {
   // All counts only increase, so their sum changes whenever one of them does.
   const ActivityCounts counts = DeviceCounters::activities();
-  return std::accumulate(counts.begin(), counts.end(), DeviceCounters::wires_taken());
+  return std::accumulate(counts.begin(), counts.end(), DeviceCounters::links_replaced());
 }
 
 ActivityCounts DeviceCounters::activities() const noexcept {
@@ -43,7 +43,7 @@ ActivityCounts DeviceCounters::activities() const noexcept {
   return counts;
 }
 
-std::uint64_t DeviceCounters::wires_taken() const noexcept {
+std::uint64_t DeviceCounters::links_replaced() const noexcept {
   return device_.wire_counters().replugged;
 }
 
@@ -59,7 +59,7 @@ EventWatch::EventWatch(const EventCounters& counters, std::int64_t period_ns,
       ring_(ring),
       changes_(counters.changes()),
       counts_(counters.activities()),
-      wires_taken_(counters.wires_taken()) {}
+      links_replaced_(counters.links_replaced()) {}
 
 void EventWatch::push(const TickEvent& event) noexcept {
   if (!ring_.push(event)) lost_.fetch_add(1, std::memory_order_relaxed);
@@ -73,19 +73,19 @@ bool EventWatch::quiet(const driver::TickRecord& record) const noexcept {
 }
 
 void EventWatch::take(const driver::TickRecord& record) noexcept {
-  if (!quiet(record)) look(record);
+  if (!quiet(record)) examine(record);
   begun_ = true;
   tick_ = record.tick;
   time_ns_ = record.time_ns;
   due_ns_ = record.due_ns;
 }
 
-void EventWatch::look(const driver::TickRecord& record) noexcept {
+void EventWatch::examine(const driver::TickRecord& record) noexcept {
   changes_ = counters_.changes();
-  const std::uint64_t wires_taken = counters_.wires_taken();
-  if (wires_taken != wires_taken_) {
-    wires_taken_ = wires_taken;
-    push({.tick = record.tick, .time_ns = record.time_ns, .kind = EventKind::kWireTaken});
+  const std::uint64_t links_replaced = counters_.links_replaced();
+  if (links_replaced != links_replaced_) {
+    links_replaced_ = links_replaced;
+    push({.tick = record.tick, .time_ns = record.time_ns, .kind = EventKind::kLinkReplaced});
   }
   watch_stage(record);
   if (record.in_contact != touching_) {

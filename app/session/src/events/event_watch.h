@@ -22,7 +22,7 @@ class EventCounters {
   /// Returns the number of occurrences of each activity; that of kMissedTicks is 0.
   virtual ActivityCounts activities() const noexcept = 0;
   /// Returns how often a lost link was replaced.
-  virtual std::uint64_t wires_taken() const noexcept = 0;
+  virtual std::uint64_t links_replaced() const noexcept = 0;
   /// Returns the force of the workspace walls in the last tick in which one pushed, N in the world;
   /// zero without walls.
   virtual std::array<double, 3> f_wall_W() const noexcept { return {}; }
@@ -34,7 +34,7 @@ class THIMBLE_EXPORT DeviceCounters final : public EventCounters {
   explicit DeviceCounters(const driver::Device& device) noexcept : device_(device) {}
   std::uint64_t changes() const noexcept override;
   ActivityCounts activities() const noexcept override;
-  std::uint64_t wires_taken() const noexcept override;
+  std::uint64_t links_replaced() const noexcept override;
   std::array<double, 3> f_wall_W() const noexcept override;
 
  private:
@@ -88,7 +88,7 @@ class THIMBLE_EXPORT EventWatch final : public TickObserver {
 
   bool quiet(const driver::TickRecord& record) const noexcept;
   void push(const TickEvent& event) noexcept;
-  void look(const driver::TickRecord& record) noexcept;
+  void examine(const driver::TickRecord& record) noexcept;
   void wait_for(const Episode& episode) noexcept;
   void watch_stage(const driver::TickRecord& record) noexcept;
   void watch_activities(const driver::TickRecord& record) noexcept;
@@ -100,7 +100,7 @@ class THIMBLE_EXPORT EventWatch final : public TickObserver {
   SpscRing<TickEvent>& ring_;
   std::uint64_t changes_;
   ActivityCounts counts_;
-  std::uint64_t wires_taken_;
+  std::uint64_t links_replaced_;
   std::array<Episode, kActivities> episodes_{};
   std::array<Change, kActivities> changes_of_force_{};
   std::int64_t earliest_end_ns_ = kNever_ns;  // No activity can end before this time.

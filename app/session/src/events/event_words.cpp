@@ -109,7 +109,7 @@ std::string sentence(const TickEvent& event, std::span<const std::string> object
       return "The enabling input is not held: no force.";
     case EventKind::kFault:
       return fmt::format("Force is off ({}). {}", name(event.fault), describe(event.fault));
-    case EventKind::kWireTaken:
+    case EventKind::kLinkReplaced:
       return "A new link to the arm is used; its force stays off until the user enables it.";
     case EventKind::kActivityBegan:
       if (event.activity == Activity::kWall) return wall_sentence(event);
@@ -151,7 +151,7 @@ level_enum level_of(const TickEvent& event) noexcept {
     case EventKind::kActivated:
     case EventKind::kDeactivated:
     case EventKind::kWaiting:
-    case EventKind::kWireTaken:
+    case EventKind::kLinkReplaced:
       return spdlog::level::info;
     case EventKind::kLinkChanged:
       return event.link == driver::LinkState::kConnected ? spdlog::level::info

@@ -42,7 +42,7 @@ enum class EventKind : std::uint8_t {
   kActivated,      ///< Forces are enabled from this tick on.
   kDeactivated,    ///< Zero force is sent from this tick on, without a fault.
   kFault,          ///< `fault` switched the force off.
-  kWireTaken,      ///< A new link to a lost arm was taken.
+  kLinkReplaced,   ///< A new link to a lost arm was taken.
   kActivityBegan,  ///< `activity` occurred for the first time after a pause.
   kActivityEnded,  ///< `activity` has ended; it occurred `count` times in `lasted_ns`.
   kTouchBegan,     ///< The tip touches `object`.

@@ -17,7 +17,7 @@ RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& rec
   figures.feel_check = setup.feel_check(arm);
   figures.virtual_time = !setup.real_time();
   figures.seed = setup.seed();
-  figures.rate_asked = setup.scene().rate;
+  figures.requested_rate = setup.scene().rate;
   figures.force_limit = setup.arm_file(arm).limits.force_max;
   figures.inside_at_start = setup.inside_at_start(arm);
   figures.triangles = setup.objects().triangles();
@@ -27,11 +27,11 @@ RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& rec
   figures.walls = device.wall_counters();
   figures.energy_stage = device.gate().energy_stage();
   figures.reopen = device.gate().limits().reopen;
-  figures.carried_weight = setup.arm_file(arm).carried_most;
+  figures.carried_weight = setup.arm_file(arm).max_carried_force;
   figures.carried_by_pose = !setup.arm_file(arm).carried_moments.isZero(0);
   figures.heat_known = device.heat().named();
   figures.heat = device.heat().heat();
-  figures.heat_most = device.heat().heat_most();
+  figures.max_heat = device.heat().max_heat();
   figures.heat_lowered = device.heat().lowered();
   figures.real_time = grant;
   figures.end = end;

@@ -25,7 +25,7 @@ std::vector<Figure> figures_of(const RunFigures& report) {
   const RunStatistics& run = report.statistics;
   std::vector<Figure> figures{
       {"ticks", static_cast<double>(run.ticks()), "", ""},
-      {"rate", run.rate(), "Hz", goal(">=", 0.999 * report.rate_asked)},
+      {"rate", run.rate(), "Hz", goal(">=", 0.999 * report.requested_rate)},
       {"period_p99_9", microseconds(run.period().percentile(0.999)), "us", ""},
       {"period_max", microseconds(static_cast<double>(run.period().max_ns())), "us", ""},
       {"touch_downs", static_cast<double>(run.contacts()), "", ""},
@@ -51,7 +51,7 @@ std::vector<Figure> figures_of(const RunFigures& report) {
 
 std::string summary(const RunFigures& report) {
   const RunStatistics& run = report.statistics;
-  const double period_us = report.rate_asked > 0 ? 1e6 / report.rate_asked : 0;
+  const double period_us = report.requested_rate > 0 ? 1e6 / report.requested_rate : 0;
   std::string s;
   s += fmt::format("The {} hand explored {} for {:.1f} s with the {} {}: {} contact{},\n",
                    report.simulated_arm ? "simulated" : "user's", report.object, run.duration(),
@@ -84,7 +84,7 @@ std::string summary(const RunFigures& report) {
                    energy > 0 ? "." : " from the hand, as a passive surface does.");
   s += fmt::format(
       "Loop      {} ticks, {:.1f} of the requested {:.1f} per second; {}.\n", run.ticks(),
-      run.rate(), report.rate_asked,
+      run.rate(), report.requested_rate,
       report.virtual_time
           ? "virtual time, bit-identical in every run"
           : fmt::format("longest period {:.0f} us, requested {:.0f} us",
@@ -128,7 +128,7 @@ std::string summary(const RunFigures& report) {
     s += fmt::format(
         "Gate      passivity: at most {:.2f} mJ given beyond the energy taken; damping in {} "
         "ticks.\n",
-        0 - 1e3 * report.gate.energy_least, report.gate.damped);  // avoids -0.00
+        0 - 1e3 * report.gate.min_energy, report.gate.damped);  // avoids -0.00
   } else if (report.energy_stage == driver::EnergyStage::kBounding) {
     s += fmt::format("Gate      energy bound: force limited in {} ticks.\n", report.gate.bounded);
   }
@@ -145,10 +145,10 @@ std::string summary(const RunFigures& report) {
         report.gate.oscillations, report.gate.oscillations == 1 ? "" : "s",
         report.gate.oscillation_frequency, report.gate.calmed);
   }
-  if (report.heat_known && report.heat_most >= driver::HeatGuard::kWarning) {
+  if (report.heat_known && report.max_heat >= driver::HeatGuard::kWarning) {
     s +=
         fmt::format("Heat      a motor reached {:.0f} % of its limit; force reduced in {} ticks.\n",
-                    100 * report.heat_most, report.heat_lowered);
+                    100 * report.max_heat, report.heat_lowered);
   }
   if (report.gate.stalls > 0) {
     s += fmt::format(

@@ -7,16 +7,16 @@ namespace thimble::session {
 DentTrace::DentTrace(const DrawnDent& drawn)
     : drawn_(drawn),
       drawings_(drawn.drawings),
-      frames_(kFramesMost),
-      points_(kPointsMost),
-      vertices_(kPointsMost),
-      normals_(kPointsMost),
-      triangles_(kTrianglesMost),
-      sources_(kTrianglesMost) {}
+      frames_(kFramesMax),
+      points_(kPointsMax),
+      vertices_(kPointsMax),
+      normals_(kPointsMax),
+      triangles_(kTrianglesMax),
+      sources_(kTrianglesMax) {}
 
 bool DentTrace::has_room(const render::BodyPatch& patch) const noexcept {
-  return frame_count_ < kFramesMost && point_count_ + patch.point_count <= kPointsMost &&
-         triangle_count_ + patch.triangle_count <= kTrianglesMost;
+  return frame_count_ < kFramesMax && point_count_ + patch.point_count <= kPointsMax &&
+         triangle_count_ + patch.triangle_count <= kTrianglesMax;
 }
 
 void DentTrace::take(const driver::TickRecord& tick) noexcept {

@@ -18,9 +18,9 @@ namespace thimble::session {
 class THIMBLE_EXPORT DentTrace final : public session::TickObserver {
  public:
   /// Largest numbers of frames, points and triangles: 2.1 MB. [chosen]
-  static constexpr std::size_t kFramesMost = 8192;
-  static constexpr std::size_t kPointsMost = 40'000;     ///< As above.
-  static constexpr std::size_t kTrianglesMost = 60'000;  ///< As above.
+  static constexpr std::size_t kFramesMax = 8192;
+  static constexpr std::size_t kPointsMax = 40'000;     ///< As above.
+  static constexpr std::size_t kTrianglesMax = 60'000;  ///< As above.
 
   /// One dent: a range of the points and of the triangles. Without triangles nothing is dented from
   /// then on.

@@ -13,7 +13,7 @@ namespace thimble::session {
 /// Poses of the moving objects of a scene after the last tick.
 class PoseRecord final : public TickObserver {
  public:
-  /// Records the objects of `touch` listed in `moving`, at most ScenePoses::kMost. Both must
+  /// Records the objects of `touch` listed in `moving`, at most ScenePoses::kMax. Both must
   /// outlive it. Real-time: never from the servo thread.
   PoseRecord(const render::SceneTouch& touch, std::span<const std::size_t> moving) noexcept
       : touch_(touch), moving_(moving) {}

@@ -168,7 +168,7 @@ bool can_hold(const Source& source, std::uint64_t rows) {
           rows * row_bytes <= max_recording_memory(source.stored));
 }
 
-void write_error(driver::ApartWriter& out, const std::string& sentence) {
+void write_error(driver::SandboxWriter& out, const std::string& sentence) {
   const H5Head head;
   out.write(&head, sizeof head);
   out.write(sentence.data(), sentence.size());
@@ -190,7 +190,7 @@ std::uint64_t max_recording_memory(std::uint64_t stored) noexcept {
   return std::max(kMemoryFree, kMemoryPerByte * std::min(stored, ~std::uint64_t{0} / 128));
 }
 
-void read_h5(int descriptor, std::uint64_t size, std::uint64_t stored, driver::ApartWriter& out) {
+void read_h5(int descriptor, std::uint64_t size, std::uint64_t stored, driver::SandboxWriter& out) {
   silence_hdf5();
   H5PLset_loading_state(0);  // loads no plugins from folders that a file may name
   const Source source{open_file(descriptor), size, stored};

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "system/run_apart.h"
+#include "system/run_in_sandbox.h"
 #include "thimble/session/recording.h"
 
 namespace thimble::session {
@@ -49,8 +49,8 @@ inline constexpr std::array kRecordingTexts{
 std::uint64_t max_recording_memory(std::uint64_t stored) noexcept;
 
 /// Reads a recording from an open regular file and writes it as plain data. HDF5 1.10 can crash on
-/// damaged tables, so this must run in a separate process (run_apart), which cannot open further
-/// files afterwards. `size`, `stored`: of the file, as in driver::RegularFile.
-void read_h5(int descriptor, std::uint64_t size, std::uint64_t stored, driver::ApartWriter& out);
+/// damaged tables, so this must run in a separate process (run_in_sandbox), which cannot open
+/// further files afterwards. `size`, `stored`: of the file, as in driver::RegularFile.
+void read_h5(int descriptor, std::uint64_t size, std::uint64_t stored, driver::SandboxWriter& out);
 
 }  // namespace thimble::session

@@ -10,7 +10,7 @@
 #include "recording/h5_reader.h"
 #include "system/printable_text.h"
 #include "system/regular_file.h"
-#include "system/run_apart.h"
+#include "system/run_in_sandbox.h"
 #include "thimble/driver/tick_record.h"
 #include "thimble/session/recording.h"
 
@@ -36,7 +36,7 @@ bool sound(const driver::TickRecord& tick) {
 }
 
 /// Reads the texts of a recording; returns false if any is missing.
-bool take_info(driver::ApartReader& in, RecordingInfo& info) {
+bool take_info(driver::SandboxReader& in, RecordingInfo& info) {
   for (const RecordingText& text : kRecordingTexts) {
     if (!in.take_array(info.*text.text)) return false;
     if (text.is_name) info.*text.text = driver::printable_name(info.*text.text);
@@ -77,19 +77,20 @@ driver::Result<Recording> read_recording(const std::filesystem::path& path) {
   if (!file) return wrong(file.error().message);
   const std::uint64_t stored = file->stored();
   constexpr std::uint64_t kBytesPerSecond = 10'000'000;
-  const driver::ApartLimits limits{.seconds = 10 + static_cast<int>(std::min<std::uint64_t>(
-                                                       stored / kBytesPerSecond, 1'000'000)),
-                                   .bytes = (std::size_t{1} << 28) + max_recording_memory(stored)};
+  const driver::SandboxLimits limits{
+      .seconds =
+          10 + static_cast<int>(std::min<std::uint64_t>(stored / kBytesPerSecond, 1'000'000)),
+      .bytes = (std::size_t{1} << 28) + max_recording_memory(stored)};
   const std::lock_guard library(hdf5_mutex());
-  const auto read = driver::run_apart(
-      [&](driver::ApartWriter& out) { read_h5(file->descriptor(), file->size(), stored, out); },
+  const auto read = driver::run_in_sandbox(
+      [&](driver::SandboxWriter& out) { read_h5(file->descriptor(), file->size(), stored, out); },
       limits);
   const auto damaged = [&](const std::string& how) {
     return wrong("this recording is damaged (it " + how +
                  "); use a copy made before the damage, or record again.");
   };
   if (!read) return damaged(read.error().message);
-  driver::ApartReader in(read->bytes());
+  driver::SandboxReader in(read->bytes());
   H5Head head;
   if (!in.take(&head, sizeof head)) return damaged("crashes its reader");
   if (head.good != 1) {

@@ -47,16 +47,16 @@ void Recorder::serve() noexcept {
     const auto ticks = ring_.front();
     if (ticks.empty()) return;
     // After an error the ticks are dropped, so that the servo always finds room.
-    if (!trouble_) {
+    if (!error_) {
       try {
-        if (auto written = file_.append(ticks); !written) trouble_ = written.error();
-        if (!trouble_ && file_.left_out() > 0) trouble_ = full();
+        if (auto written = file_.append(ticks); !written) error_ = written.error();
+        if (!error_ && file_.left_out() > 0) error_ = full();
       } catch (const std::exception& out_of_memory) {
-        trouble_ = driver::Error{std::string("The recording ends: ") + out_of_memory.what()};
+        error_ = driver::Error{std::string("The recording ends: ") + out_of_memory.what()};
       }
       // Reported at once, because a long run may take hours.
-      if (trouble_)
-        scene::logger().warn("{} The run continues without the recording.", trouble_->message);
+      if (error_)
+        scene::logger().warn("{} The run continues without the recording.", error_->message);
     }
     ring_.drop(ticks.size());
   }
@@ -65,8 +65,8 @@ void Recorder::serve() noexcept {
 driver::Result<void> Recorder::finish() {
   stop_thread();
   while (ring_.waiting() > 0) serve();
-  auto finished = file_.finish(!trouble_ && dropped() == 0);
-  if (trouble_) return *trouble_;
+  auto finished = file_.finish(!error_ && dropped() == 0);
+  if (error_) return *error_;
   if (!finished) return finished;
   if (dropped() > 0) {
     return driver::Error{path().string() + ": the disk was too slow; " + std::to_string(dropped()) +

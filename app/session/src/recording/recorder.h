@@ -68,7 +68,7 @@ class Recorder {
   RecordingFile file_;
   SpscRing<driver::TickRecord> ring_{kRingTicks};
   std::atomic<std::uint64_t> dropped_{0};
-  std::optional<driver::Error> trouble_;  // Error of the writing thread.
+  std::optional<driver::Error> error_;  // Error of the writing thread.
   std::atomic<bool> stop_{false};
   std::thread writer_;
 };

@@ -14,7 +14,7 @@
 #include "recording/h5_handle.h"
 #include "recording/h5_types.h"
 #include "system/regular_file.h"
-#include "system/run_apart.h"
+#include "system/run_in_sandbox.h"
 #include "thimble/driver/fault.h"
 
 namespace thimble::session {
@@ -119,8 +119,8 @@ bool holds_recording(const std::filesystem::path& path) {
 bool is_recording(const std::filesystem::path& path) {
   if (!driver::is_regular(path)) return false;
   const std::lock_guard library(hdf5_mutex());
-  const auto found =
-      driver::run_apart([&] { return std::string(holds_recording(path) ? "recording" : ""); }, {});
+  const auto found = driver::run_in_sandbox(
+      [&] { return std::string(holds_recording(path) ? "recording" : ""); }, {});
   return found && !found->empty();
 }
 

@@ -103,7 +103,7 @@ Replay begin_replay(const Recording& recording, const scene::Scene& scene,
 
 /// Passes the arm's state of one tick to the scene's force law, and compares the result with the
 /// recording. An arm in fault felt nothing, so nothing is computed.
-void feel_again(const Recording& recording, std::size_t i, ReplayedLaw& law, Replay& replay) {
+void replay_tick(const Recording& recording, std::size_t i, ReplayedLaw& law, Replay& replay) {
   const TickRecord& then = recording.ticks[i];
   const std::int64_t before_ns = recording.ticks[i == 0 ? 0 : i - 1].time_ns;
   // Computed as by the device, so that it is bit-identical.
@@ -179,8 +179,8 @@ driver::Result<std::shared_ptr<scene::SceneObjects>> build(const scene::Scene& s
   return objects;
 }
 
-driver::Result<Replay> replay_alone(const Recording& recording, const std::string& scene_name,
-                                    ReplayWatch* watch) {
+driver::Result<Replay> replay_single(const Recording& recording, const std::string& scene_name,
+                                     ReplayWatch* watch) {
   const auto file = scene_of(recording, scene_name);
   if (!file) return file.error();
   const auto scene = load_scene_of(recording, *file, recording.info.arm_file, false);
@@ -191,7 +191,7 @@ driver::Result<Replay> replay_alone(const Recording& recording, const std::strin
   Replay replay = begin_replay(recording, *scene, *file);
   ReplayedLaw law(recording, *scene, scene->arms.front().arm, (*objects)->touch());
   for (std::size_t i = 0; i < recording.ticks.size(); ++i) {
-    feel_again(recording, i, law, replay);
+    replay_tick(recording, i, law, replay);
     (*objects)->serve_pages();
     if (watch != nullptr) watch->take(replay.felt.ticks.back());
   }
@@ -201,7 +201,7 @@ driver::Result<Replay> replay_alone(const Recording& recording, const std::strin
 }  // namespace
 
 driver::Result<Replay> replay(const Recording& recording, const std::string& scene_name) {
-  return replay_alone(recording, scene_name, nullptr);
+  return replay_single(recording, scene_name, nullptr);
 }
 
 driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> recordings,
@@ -214,7 +214,7 @@ driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> r
                                                     ReplayWatch* watch) {
   if (recordings.empty()) return driver::Error{"No recording to replay was given."};
   if (recordings.size() == 1 && recordings.front().info.arm_in_scene.empty()) {
-    auto alone = replay_alone(recordings.front(), scene_name, watch);
+    auto alone = replay_single(recordings.front(), scene_name, watch);
     if (!alone) return alone.error();
     std::vector<Replay> one;
     one.push_back(std::move(alone).value());
@@ -242,7 +242,7 @@ driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> r
     // Same order as in the run: each arm in the scene's order, then the bodies.
     for (std::size_t arm = 0; arm < order->size(); ++arm) {
       const std::size_t k = (*order)[arm];
-      feel_again(recordings[k], i, *laws[arm], replays[k]);
+      replay_tick(recordings[k], i, *laws[arm], replays[k]);
     }
     (*objects)->step_bodies(period);
     (*objects)->serve_pages();

@@ -14,7 +14,7 @@ ReplayedLaw::ReplayedLaw(const Recording& recording, const scene::Scene& scene,
   }
   if (arm.carried_moments.isZero(0)) return;
   const scene::LinkGravity links = scene::link_gravity(arm);
-  if (links.most > 0) links_ = links;
+  if (links.max_force > 0) links_ = links;
 }
 
 Eigen::Vector3d ReplayedLaw::carried(const driver::DeviceState& state) const {

@@ -44,7 +44,7 @@ class ReplayedLaw final : private KnobRequests {
   std::optional<LiveKnobs> knobs_;  // Set if any knob was turned.
   std::vector<std::optional<double>> wanted_;
   bool turning_ = false;
-  FeltTick last_;
+  KnobTick last_;
   double weight_ = 0;                        // N
   std::optional<scene::LinkGravity> links_;  // Set if links are compensated.
 };

@@ -16,9 +16,9 @@ namespace {
 /// Parses a number > 0.
 std::optional<double> positive_number(const std::string& text) {
   double value = 0;
-  const auto [end, trouble] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool good =
-      trouble == std::errc() && end == text.data() + text.size() && value > 0 && value <= 1e12;
+      status == std::errc() && end == text.data() + text.size() && value > 0 && value <= 1e12;
   return good ? std::optional(value) : std::nullopt;
 }
 

@@ -59,7 +59,7 @@ std::vector<ArmLine> lines_of(const driver::DeltaArm& arm, const Vector3d& q,
 }
 
 /// Returns only the tip for an arm of unknown geometry.
-std::vector<ArmLine> lines_of(const driver::ToldArm&, const Vector3d&, const Vector3d& p_BT) {
+std::vector<ArmLine> lines_of(const driver::VendorPoseArm&, const Vector3d&, const Vector3d& p_BT) {
   return {{p_BT}};
 }
 

@@ -20,7 +20,7 @@ struct Guarded {
 static_assert(std::atomic<std::uintptr_t>::is_always_lock_free,
               "Atomics in a signal handler must be lock-free.");
 
-std::array<Guarded, BusGuard::kMost> guarded;
+std::array<Guarded, BusGuard::kMax> guarded;
 std::uintptr_t page_size = 4096;
 
 /// Replaces a missing page by a page of zeros. mmap is a plain system call, so it is safe in a
@@ -59,7 +59,7 @@ std::mutex places;
 BusGuard::BusGuard(std::span<std::byte> memory) {
   install();
   const std::lock_guard lock(places);
-  for (std::size_t i = 0; i < kMost; ++i) {
+  for (std::size_t i = 0; i < kMax; ++i) {
     if (guarded[i].end.load() != 0) continue;
     slot_ = i;
     const auto begin = reinterpret_cast<std::uintptr_t>(memory.data());
@@ -72,11 +72,11 @@ BusGuard::BusGuard(std::span<std::byte> memory) {
 
 BusGuard::~BusGuard() {
   const std::lock_guard lock(places);
-  if (slot_ < kMost) guarded[slot_].end.store(0);
+  if (slot_ < kMax) guarded[slot_].end.store(0);
 }
 
 bool BusGuard::broken() const noexcept {
-  return slot_ < kMost && guarded[slot_].broken.load();
+  return slot_ < kMax && guarded[slot_].broken.load();
 }
 
 }  // namespace thimble::session

@@ -9,10 +9,10 @@ namespace thimble::session {
 /// its lifetime a missing page of `memory` is replaced by zeros, and `broken` returns true. A
 /// SIGBUS from another address ends the process as usual.
 ///
-/// At most kMost guards are active at a time; a further one has no effect.
+/// At most kMax guards are active at a time; a further one has no effect.
 class BusGuard {
  public:
-  static constexpr std::size_t kMost = 16;
+  static constexpr std::size_t kMax = 16;
 
   /// Guards whole pages of mapped memory. Real-time: never from the servo thread.
   explicit BusGuard(std::span<std::byte> memory);
@@ -24,7 +24,7 @@ class BusGuard {
   bool broken() const noexcept;
 
  private:
-  std::size_t slot_ = kMost;
+  std::size_t slot_ = kMax;
 };
 
 }  // namespace thimble::session

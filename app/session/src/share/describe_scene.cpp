@@ -45,7 +45,7 @@ std::string names_of(const scene::SceneObject& object, std::string_view group) {
 }
 
 // Returns the largest number of edges of an object that may be split during the run.
-std::size_t splits_most(const scene::SceneObject& object, const render::ObjectTouch& touch) {
+std::size_t max_splits(const scene::SceneObject& object, const render::ObjectTouch& touch) {
   return object.body.shape.named() && touch.shape()->refines() ? touch.shape()->splits_left() : 0;
 }
 
@@ -78,7 +78,7 @@ SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects&
                                  .vertex_count = end.vertex - begin.vertex,
                                  .first_triangle = begin.triangle,
                                  .triangle_count = end.triangle - begin.triangle,
-                                 .splits_most = splits_most(object, objects.touch().object(i)),
+                                 .max_splits = max_splits(object, objects.touch().object(i)),
                                  .crease_angle = object.contact.crease_angle.value_or(kCreaseDrawn),
                                  .texture = names_of(object, "texture"),
                                  .friction = names_of(object, "friction")});

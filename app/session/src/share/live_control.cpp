@@ -69,8 +69,8 @@ void LiveControl::wait_while_paused() noexcept {
     // The difference of unsigned counters is valid after a wrap. A larger one is invalid and is
     // dropped.
     const std::uint64_t wanted = shared_->steps_asked() - steps_;
-    if (wanted > kStepsMost) steps_ += wanted;
-    if (wanted > 0 && wanted <= kStepsMost) {
+    if (wanted > kStepsMax) steps_ += wanted;
+    if (wanted > 0 && wanted <= kStepsMax) {
       ++steps_;
       return;
     }

@@ -78,7 +78,7 @@ class LiveControl final : public TickObserver {
   bool paused_ = false;
   double gain_ = 1;
   LawChange change_;
-  FeltTick last_;
+  KnobTick last_;
   SharedHand hand_;
 };
 

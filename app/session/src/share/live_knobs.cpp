@@ -45,7 +45,7 @@ LiveKnobs::LiveKnobs(const scene::Scene& scene, render::SceneTouch& touch) {
       if (knob.name.starts_with(scene.objects[i].name + ": ")) knob.stiffness = stiffness;
     }
   }
-  if (knobs_.size() > kKnobsMost) knobs_.resize(kKnobsMost);
+  if (knobs_.size() > kKnobsMax) knobs_.resize(kKnobsMax);
 }
 
 std::vector<SharedScene::Knob> LiveKnobs::described() const {
@@ -53,14 +53,14 @@ std::vector<SharedScene::Knob> LiveKnobs::described() const {
   for (const Knob& knob : knobs_) {
     described.push_back({.name = knob.name,
                          .unit = knob.setting.unit,
-                         .least = knob.setting.least,
-                         .most = knob.setting.most,
+                         .min = knob.setting.min,
+                         .max = knob.setting.max,
                          .initial = knob.setting.value});
   }
   return described;
 }
 
-bool LiveKnobs::step(KnobRequests& requests, const FeltTick& last, double dt) noexcept {
+bool LiveKnobs::step(KnobRequests& requests, const KnobTick& last, double dt) noexcept {
   bool turning = false;
   change_ = {};
   for (std::size_t i = 0; i < knobs_.size(); ++i) {
@@ -86,13 +86,13 @@ bool LiveKnobs::step(KnobRequests& requests, const FeltTick& last, double dt) no
         std::abs(sensitivity.per_depth * last.depth) + sensitivity.per_speed * length(last.v_WT) +
         sensitivity.per_force * length(last.f_wanted_W) +
         (last.in_contact ? sensitivity.per_stiffness * stiffness : 0) + sensitivity.always;
-    double most = (knob.setting.most - knob.setting.least) * dt / kTurnTime;
+    double max_step = (knob.setting.max - knob.setting.min) * dt / kTurnTime;
     // Written so that NaN changes nothing.
     if (!(newtons >= 0)) continue;
-    if (newtons > 0) most = std::min(most, kForceRate / kWithFriction * dt / newtons);
+    if (newtons > 0) max_step = std::min(max_step, kForceRate / kWithFriction * dt / newtons);
     const double way = knob.target - knob.now;
     // Ends exactly at the requested value.
-    knob.now = std::abs(way) <= most ? knob.target : knob.now + std::copysign(most, way);
+    knob.now = std::abs(way) <= max_step ? knob.target : knob.now + std::copysign(max_step, way);
     knob.setting.set(knob.setting.stage, knob.now);
     requests.store_knob(i, knob.now);
   }

@@ -16,10 +16,10 @@
 namespace thimble::session {
 
 /// Part of a tick on which the speed of a knob depends.
-struct FeltTick {
-  FeltTick() = default;
+struct KnobTick {
+  KnobTick() = default;
   /// Copies the part from a record; implicit, so that a record can be passed. Real-time: safe.
-  FeltTick(const driver::TickRecord& record) noexcept
+  KnobTick(const driver::TickRecord& record) noexcept
       : depth(record.depth),
         v_WT(record.v_WT),
         f_wanted_W(record.f_wanted_W),
@@ -46,7 +46,7 @@ class LiveKnobs {
   /// noticeable difference at 1 N [PHYSICS 6: 7 %].
   static constexpr double kForceRate = 40;
 
-  /// Collects the settings of a scene's objects, at most kKnobsMost. Both arguments must outlive
+  /// Collects the settings of a scene's objects, at most kKnobsMax. Both arguments must outlive
   /// it. Real-time: never from the servo thread.
   LiveKnobs(const scene::Scene& scene, render::SceneTouch& touch);
 
@@ -56,7 +56,7 @@ class LiveKnobs {
   /// Advances the knobs by a tick of `dt` (s) towards the requested values; `last` is the previous
   /// tick. Returns whether a knob is still changing. Real-time: safe; costs almost nothing while no
   /// knob changes.
-  bool step(KnobRequests& requests, const FeltTick& last, double dt) noexcept;
+  bool step(KnobRequests& requests, const KnobTick& last, double dt) noexcept;
 
   /// Returns the knob whose change `step` started in the last tick, with its target. There is at
   /// most one per tick, so that a tick of a recording can hold it. Real-time: safe.

@@ -5,15 +5,15 @@
 namespace thimble::session {
 namespace {
 
-constexpr std::chrono::milliseconds kBetweenLooks{250};
+constexpr std::chrono::milliseconds kCheckInterval{250};
 
 }  // namespace
 
 bool RunAttachment::step() {
   if (reader_ && reader_->state() != RunState::kEnded) return false;
   const auto now = std::chrono::steady_clock::now();
-  if (now < next_look_) return false;
-  next_look_ = now + kBetweenLooks;
+  if (now < next_check_) return false;
+  next_check_ = now + kCheckInterval;
   const auto runs = running_runs();
   const auto found = std::find_if(runs.begin(), runs.end(), [this](const RunningRun& run) {
     return name_.empty() || run.name == name_;
@@ -28,7 +28,7 @@ bool RunAttachment::step() {
   if (reader_ && reader_->scene().began_ns == found->began_ns)
     return false;  // the run that has ended
   auto reader = SharedReader::attach(found->name);
-  trouble_ = reader ? "" : reader.error().message;
+  error_ = reader ? "" : reader.error().message;
   if (!reader) return false;
   reader_ = std::move(reader).value();
   name_ = found->name;
@@ -42,7 +42,7 @@ bool RunAttachment::over() const {
 }
 
 std::string RunAttachment::notice() const {
-  if (!trouble_.empty()) return trouble_;
+  if (!error_.empty()) return error_;
   if (!reader_) {
     return name_.empty() ? "Waiting for a run: thimble run SCENE --view"
                          : "Waiting for a run named " + name_ + ".";

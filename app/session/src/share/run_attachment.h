@@ -34,8 +34,8 @@ class THIMBLE_EXPORT RunAttachment {
  private:
   std::string name_;
   std::unique_ptr<SharedReader> reader_;
-  std::string trouble_;
-  std::chrono::steady_clock::time_point next_look_{};
+  std::string error_;
+  std::chrono::steady_clock::time_point next_check_{};
 };
 
 }  // namespace thimble::session

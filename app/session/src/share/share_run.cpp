@@ -13,7 +13,7 @@ namespace {
 
 // Time that a viewer's plots can show, and largest number of ticks in memory (32 MB). Chosen.
 constexpr double kShownSeconds = 8;
-constexpr std::size_t kShownTicksMost = 100'000;
+constexpr std::size_t kShownTicksMax = 100'000;
 constexpr int kRunsOfAScene = 100;  // largest number of simultaneous runs of one scene; chosen
 
 }  // namespace
@@ -33,7 +33,7 @@ driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const L
   scene.restarts = options.restarts && !setup.any_real();
   if (setup.arms() == 1) scene.knobs = knobs.described();
   const auto ring = std::min(
-      static_cast<std::size_t>(std::ceil(kShownSeconds * setup.scene().rate)), kShownTicksMost);
+      static_cast<std::size_t>(std::ceil(kShownSeconds * setup.scene().rate)), kShownTicksMax);
   if (before != nullptr) return SharedRun::create_next(*before, scene, ring);
   const std::string asked = options.share_name.empty() ? setup.scene().name : options.share_name;
   const std::string name = options.share_out ? run_name_of(asked) : "";

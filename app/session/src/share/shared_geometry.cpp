@@ -21,7 +21,7 @@ std::vector<double*> numbers_of(driver::DeltaArm& g) {
   return {&g.a, &g.b, &g.c,          &g.d,          &g.e,         &g.f,
           &g.r, &g.s, &g.azimuth[0], &g.azimuth[1], &g.azimuth[2]};
 }
-std::vector<double*> numbers_of(driver::ToldArm&) {
+std::vector<double*> numbers_of(driver::VendorPoseArm&) {
   return {};
 }
 

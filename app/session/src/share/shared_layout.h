@@ -29,28 +29,28 @@ namespace thimble::session {
 inline constexpr std::uint64_t kSharedReady = 0x31656c626d696874;
 
 /// Largest number of viewers. Chosen: more than occur in practice.
-inline constexpr std::size_t kViewersMost = 16;
+inline constexpr std::size_t kViewersMax = 16;
 // Bytes of the file that processes lock (SharedMemory::lock), after that of the creator.
 /// Locked while a request of several words is written.
 inline constexpr std::int64_t kTurnByte = 1;
 /// First byte of the viewers, one byte per place.
 inline constexpr std::int64_t kFirstViewerByte = 16;
 /// Largest number of knobs. Chosen: more than a user can overview.
-inline constexpr std::size_t kKnobsMost = 64;
+inline constexpr std::size_t kKnobsMax = 64;
 /// Largest number of objects. Chosen as a bound for readers.
-inline constexpr std::size_t kObjectsMost = 1024;
+inline constexpr std::size_t kObjectsMax = 1024;
 /// Largest number of field samples. Chosen: more would hide each other.
-inline constexpr std::size_t kFieldSamplesMost = 4096;
-inline constexpr std::size_t kArmsMost = 8;  ///< Largest number of arms, as in a scene.
+inline constexpr std::size_t kFieldSamplesMax = 4096;
+inline constexpr std::size_t kArmsMax = 8;  ///< Largest number of arms, as in a scene.
 /// Largest number of ticks that one request lets a paused run advance; a larger one is invalid.
 /// Chosen.
-inline constexpr std::uint64_t kStepsMost = 10'000;
+inline constexpr std::uint64_t kStepsMax = 10'000;
 // Range of the speed of a run, as a multiple of real time. Chosen: at the lowest a touch of seconds
 // takes minutes; a small machine with an open window can compute the highest.
-inline constexpr double kSpeedLeast = 0.1;
-inline constexpr double kSpeedMost = 4;
+inline constexpr double kSpeedMin = 0.1;
+inline constexpr double kSpeedMax = 4;
 /// Largest memory that a reader maps, bytes: 100 million triangles and a long ring. Chosen.
-inline constexpr std::uint64_t kSharedBytesMost = std::uint64_t{1} << 33;
+inline constexpr std::uint64_t kSharedBytesMax = std::uint64_t{1} << 33;
 
 /// Text of at most N - 1 bytes, padded with zeros.
 template <std::size_t N>
@@ -116,7 +116,7 @@ struct SharedHead {
   SharedText<64> scene{};
   SharedText<1024> scene_file{};
   std::uint64_t arm_count = 0;  ///< Number of used entries of `arms`; at least 1.
-  std::array<SharedArm, kArmsMost> arms{};
+  std::array<SharedArm, kArmsMax> arms{};
   SharedTable objects, knobs, vertices, triangles, field, shaped, splits, ring;
 };
 static_assert(std::is_standard_layout_v<SharedHead>);
@@ -138,8 +138,8 @@ struct SharedObject {
   std::uint64_t first_triangle = 0, triangle_count = 0;
   /// Index in the table `shaped`; one entry per vertex and split.
   std::uint64_t first_shaped = 0;
-  std::uint64_t first_split = 0, splits_most = 0;  ///< Range in the table `splits`.
-  double crease_angle = 0;                         ///< Edges sharper than this stay sharp, rad.
+  std::uint64_t first_split = 0, max_splits = 0;  ///< Range in the table `splits`.
+  double crease_angle = 0;                        ///< Edges sharper than this stay sharp, rad.
   /// Names of its textures in scenes; empty: none.
   SharedText<64> texture{};
   /// Names of its friction effects in scenes; empty: none.
@@ -156,7 +156,7 @@ struct SharedFieldSample {
 struct SharedKnob {
   SharedText<64> name{};  ///< Name, such as "OBJECT: stiffness".
   SharedText<16> unit{};
-  double least = 0, most = 0, initial = 0;
+  double min = 0, max = 0, initial = 0;
 };
 
 using SharedVertex = std::array<double, 3>;           ///< Initial vertex in the world, m.
@@ -227,23 +227,23 @@ struct SharedRequests {
   driver::Snapshot<SharedHand> hand;
   /// Process ids of the viewers, for display; 0: a free place. A viewer locks the byte of its place
   /// while it is alive.
-  std::array<std::atomic<std::uint64_t>, kViewersMost> viewers;
+  std::array<std::atomic<std::uint64_t>, kViewersMax> viewers;
 };
 
 // Values of `pause`. A viewer with a place pauses by 1 + its place, so that its pause ends if it
-// dies. A viewer without a place pauses by kPausedByNobody.
+// dies. A viewer without a place pauses by kPausedWithoutPlace.
 inline constexpr std::uint32_t kNotPaused = 0;
-inline constexpr std::uint32_t kPausedByNobody = kViewersMost + 1;
+inline constexpr std::uint32_t kPausedWithoutPlace = kViewersMax + 1;
 
 /// Returns whether a value of `pause` requests a pause; any other value except kNotPaused is
 /// invalid.
 constexpr bool is_pause(std::uint32_t value) noexcept {
-  return value >= 1 && value <= kPausedByNobody;
+  return value >= 1 && value <= kPausedWithoutPlace;
 }
 
 /// Values of `loop` and `speed` before the first request.
-inline constexpr std::uint32_t kLoopUnasked = 2;
-inline constexpr double kSpeedUnasked = 0;
+inline constexpr std::uint32_t kLoopUnset = 2;
+inline constexpr double kSpeedUnset = 0;
 
 /// Data that changes during the run.
 struct SharedLive {
@@ -261,8 +261,8 @@ struct SharedLive {
   driver::Snapshot<ScenePoses> poses;
   driver::Snapshot<render::BodyPatch> patch;
   /// Newest ticks of the arms after the first.
-  std::array<driver::Snapshot<driver::TickRecord>, kArmsMost - 1> others;
-  std::array<SharedKnobState, kKnobsMost> knobs;
+  std::array<driver::Snapshot<driver::TickRecord>, kArmsMax - 1> others;
+  std::array<SharedKnobState, kKnobsMax> knobs;
   SharedRequests requests;
 };
 

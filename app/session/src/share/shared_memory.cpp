@@ -41,7 +41,7 @@ std::string path_of(const std::string& file) {
   return path;
 }
 
-driver::Error trouble(const std::string& what) {
+driver::Error system_error(const std::string& what) {
   return driver::Error{what + ": " + std::strerror(errno) + "."};
 }
 
@@ -112,7 +112,7 @@ bool remove_if_dead(const std::string& file) {
 }
 
 /// Returns a random word that other users cannot predict.
-std::string unforeseen() {
+std::string random_word() {
   std::uint64_t number = 0;
   if (getrandom(&number, sizeof number, 0) != sizeof number) number = std::random_device{}();
   return std::to_string(number);
@@ -124,7 +124,7 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::map(int file, std::s
                                                                 Place place, bool made) {
   void* at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
   if (at == MAP_FAILED) {
-    const auto error = trouble("Cannot map shared memory");
+    const auto error = system_error("Cannot map shared memory");
     close(file);
     if (made && !place.file.empty()) unlink(path_of(place.file).c_str());
     return error;
@@ -149,7 +149,7 @@ driver::Result<void> SharedMemory::take_name(SharedMemory& before) {
   }
   // Atomic for all readers [rename(2)].
   if (rename(path_of(name_).c_str(), path_of(before.name_).c_str()) != 0) {
-    return trouble("The name \"" + before.run_ + "\" cannot be taken over");
+    return system_error("The name \"" + before.run_ + "\" cannot be taken over");
   }
   name_ = before.name_;
   before.made_ = false;
@@ -171,14 +171,14 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_as(const std:
                                                                       std::size_t bytes) {
   // Created without a name first, so that it is locked before any process can find it.
   const int file = ::open(kFolder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (file < 0) return trouble("Cannot create shared memory in " + std::string(kFolder));
+  if (file < 0) return system_error("Cannot create shared memory in " + std::string(kFolder));
   fchmod(file, 0600);
   driver::lock_byte(file, kMakerByte);
   // Also reserves the pages, so that a lack of memory is reported here and not by SIGBUS in a tick.
   if (const int full = posix_fallocate(file, 0, static_cast<off_t>(bytes)); full != 0) {
     errno = full;
     const auto error =
-        trouble("Cannot allocate " + std::to_string(bytes) + " bytes of shared memory");
+        system_error("Cannot allocate " + std::to_string(bytes) + " bytes of shared memory");
     close(file);
     return error;
   }
@@ -198,14 +198,14 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_as(const std:
     // latter case uses a name that other users cannot predict.
     const bool ours = lstat(path_of(place.file).c_str(), &status) == 0 && is_own(status);
     if (!ours) {
-      place.file += '.' + unforeseen();
+      place.file += '.' + random_word();
       failed = put();
     }
   }
   if (failed == 0) return map(file, bytes, std::move(place), true);
   close(file);
   errno = failed;
-  if (failed != EEXIST) return trouble("Cannot create shared memory " + path_of(place.file));
+  if (failed != EEXIST) return system_error("Cannot create shared memory " + path_of(place.file));
   return driver::Error{"A run named \"" + run +
                        "\" is already shared; end it, or choose another name with --name."};
 }
@@ -216,11 +216,11 @@ std::string SharedMemory::path() const {
 
 driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::create_nameless(std::size_t bytes) {
   const int file = memfd_create("thimble", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  if (file < 0) return trouble("Cannot create shared memory");
+  if (file < 0) return system_error("Cannot create shared memory");
   if (ftruncate(file, static_cast<off_t>(bytes)) != 0 ||
       fcntl(file, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW) != 0) {
     const auto error =
-        trouble("Cannot allocate " + std::to_string(bytes) + " bytes of shared memory");
+        system_error("Cannot allocate " + std::to_string(bytes) + " bytes of shared memory");
     close(file);
     return error;
   }
@@ -254,7 +254,7 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::open(const std::stri
                          "\" is shared; list the shared runs with `thimble view --list`."};
   }
   const auto bytes = static_cast<std::uint64_t>(status.st_size);
-  if (bytes < kSharedTablesOffset || bytes > kSharedBytesMost) {
+  if (bytes < kSharedTablesOffset || bytes > kSharedBytesMax) {
     close(file);
     return driver::Error{"The shared memory \"" + run +
                          "\" is not a run of this version of thimble; restart the run with the "
@@ -266,7 +266,7 @@ driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::open(const std::stri
 driver::Result<std::unique_ptr<SharedMemory>> SharedMemory::again() const {
   const std::string own = "/proc/self/fd/" + std::to_string(file_);
   const int file = ::open(own.c_str(), O_RDWR | O_CLOEXEC);
-  if (file < 0) return trouble("Cannot map shared memory again");
+  if (file < 0) return system_error("Cannot map shared memory again");
   return map(file, bytes_.size(), {.file = name_, .run = run_}, false);
 }
 

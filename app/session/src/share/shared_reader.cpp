@@ -16,7 +16,7 @@ namespace {
 
 /// Makes a bool valid after any byte was copied into it: reading a value other than 0 and 1 as a
 /// bool is undefined.
-void mend(bool& value) noexcept {
+void make_valid(bool& value) noexcept {
   unsigned char byte = 0;
   std::memcpy(&byte, &value, 1);
   byte = byte == 1 ? 1 : 0;
@@ -88,7 +88,7 @@ SharedReader::~SharedReader() {
   if (!place_) return;
   // The pause of a viewer that exits remains; the pause of one that dies ends.
   std::uint32_t own = static_cast<std::uint32_t>(*place_) + 1;
-  live_->requests.pause.compare_exchange_strong(own, kPausedByNobody);
+  live_->requests.pause.compare_exchange_strong(own, kPausedWithoutPlace);
   live_->requests.viewers[*place_].store(0);
   memory_->unlock(kFirstViewerByte + static_cast<std::int64_t>(*place_));
 }
@@ -97,7 +97,7 @@ void SharedReader::sign_in() noexcept {
   if (!memory_) return;
   // First tries free places, then places of viewers that died and that the run has not cleared yet.
   for (const bool cleared : {true, false}) {
-    for (std::size_t place = 0; place < kViewersMost; ++place) {
+    for (std::size_t place = 0; place < kViewersMax; ++place) {
       auto& viewer = live_->requests.viewers[place];
       if (cleared && viewer.load() != 0) continue;
       if (!memory_->lock(kFirstViewerByte + static_cast<std::int64_t>(place))) continue;
@@ -179,7 +179,7 @@ bool SharedReader::patch(render::BodyPatch& patch) const noexcept {
 void SharedReader::shape(std::size_t object, render::TriangleMesh& mesh) const {
   const SharedScene::Object& o = scene_.objects[object];
   if (!o.shaped || mesh.vertices.size() < o.vertex_count) return;
-  for (std::size_t n = mesh.vertices.size() - o.vertex_count; n < o.splits_most; ++n) {
+  for (std::size_t n = mesh.vertices.size() - o.vertex_count; n < o.max_splits; ++n) {
     const SharedSplit& split = splits_[o.first_split + n];
     if (split.ready.load(std::memory_order_acquire) != 1) break;
     if (!split_edge(mesh, split.kept, split.lost, split.triangles)) {
@@ -188,7 +188,7 @@ void SharedReader::shape(std::size_t object, render::TriangleMesh& mesh) const {
     }
   }
   auto& vertices = mesh.vertices;
-  const std::size_t count = std::min(vertices.size(), o.vertex_count + o.splits_most);
+  const std::size_t count = std::min(vertices.size(), o.vertex_count + o.max_splits);
   for (std::size_t i = 0; i < count; ++i) {
     std::array<double, 3> p{};
     if (!shaped_[o.first_shaped + i].load(p, 10)) continue;
@@ -221,24 +221,24 @@ std::string SharedReader::notice() const {
 double SharedReader::knob(std::size_t knob) const noexcept {
   const double now = live_->knobs[knob].now.load();
   const SharedScene::Knob& bounds = scene_.knobs[knob];
-  return now >= bounds.least && now <= bounds.most ? now : bounds.initial;
+  return now >= bounds.min && now <= bounds.max ? now : bounds.initial;
 }
 
 double SharedReader::knob_wanted(std::size_t knob) const noexcept {
   const double wanted = live_->knobs[knob].wanted.load();
   const SharedScene::Knob& bounds = scene_.knobs[knob];
-  return wanted >= bounds.least && wanted <= bounds.most ? wanted : bounds.initial;
+  return wanted >= bounds.min && wanted <= bounds.max ? wanted : bounds.initial;
 }
 
 void SharedReader::turn_knob(std::size_t knob, double value) noexcept {
   if (std::isnan(value)) return;
   const SharedScene::Knob& bounds = scene_.knobs[knob];
-  live_->knobs[knob].wanted.store(std::clamp(value, bounds.least, bounds.most));
+  live_->knobs[knob].wanted.store(std::clamp(value, bounds.min, bounds.max));
 }
 
 void SharedReader::ask_pause(bool pause) noexcept {
   const std::uint32_t own =
-      place_ ? static_cast<std::uint32_t>(*place_) + 1 : std::uint32_t{kPausedByNobody};
+      place_ ? static_cast<std::uint32_t>(*place_) + 1 : std::uint32_t{kPausedWithoutPlace};
   live_->requests.pause.store(pause ? own : kNotPaused);
 }
 
@@ -279,10 +279,10 @@ bool SharedReader::lead_hand(const Eigen::Vector3d& p_WH, bool holds) noexcept {
 }
 
 bool SharedReader::sound(driver::TickRecord& record) const noexcept {
-  mend(record.in_contact);
-  mend(record.fresh);
-  mend(record.has_gripper);
-  mend(record.home_needed);
+  make_valid(record.in_contact);
+  make_valid(record.fresh);
+  make_valid(record.has_gripper);
+  make_valid(record.home_needed);
   // A faulty arm may report positions that are not finite. They are replaced by 0, so that its
   // fault is still shown.
   for (auto* numbers : {&record.q, &record.p_WT, &record.v_WT, &record.p_WP, &record.n_W,
@@ -301,7 +301,7 @@ bool SharedReader::sound(driver::TickRecord& record) const noexcept {
 }
 
 bool SharedReader::sound(ScenePoses& poses) const noexcept {
-  bool good = poses.count <= ScenePoses::kMost;
+  bool good = poses.count <= ScenePoses::kMax;
   for (std::size_t i = 0; good && i < poses.count; ++i) {
     good = poses.object[i] >= 0 &&
            static_cast<std::size_t>(poses.object[i]) < scene_.objects.size() &&
@@ -312,7 +312,7 @@ bool SharedReader::sound(ScenePoses& poses) const noexcept {
 }
 
 bool SharedReader::sound(render::BodyPatch& patch) const noexcept {
-  mend(patch.complete);
+  make_valid(patch.complete);
   if (patch.triangle_count == 0 && patch.point_count == 0) {
     patch.object = -1;
     return true;

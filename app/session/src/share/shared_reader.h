@@ -94,13 +94,13 @@ class THIMBLE_EXPORT SharedReader {
 
   /// Returns success if the run processes all requests made so far. Fails if it has ended; send
   /// requests to the run that replaces it, if any.
-  driver::Result<void> heard() const;
+  driver::Result<void> check_accepted() const;
   void ask_pause(bool pause) noexcept;
   bool pause_asked() const noexcept { return is_pause(live_->requests.pause.load()); }
-  /// Lets a paused run advance by `ticks`, 1 to kStepsMost. The error gives the reason if it
+  /// Lets a paused run advance by `ticks`, 1 to kStepsMax. The error gives the reason if it
   /// cannot.
   driver::Result<void> ask_steps(std::uint64_t ticks);
-  /// Requests a speed, kSpeedLeast to kSpeedMost times real time. The error gives the reason if the
+  /// Requests a speed, kSpeedMin to kSpeedMax times real time. The error gives the reason if the
   /// run does not support it.
   driver::Result<void> ask_speed(double speed);
   /// Returns the requested speed; 1 if the memory is invalid.

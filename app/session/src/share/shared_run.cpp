@@ -27,7 +27,7 @@ void put(const std::string& text, SharedText<N>& to) {
 /// Clears a request that a viewer did not finish because it was killed. Precondition: no viewer is
 /// writing now.
 template <class T>
-void make_whole(driver::Snapshot<T>& snapshot) noexcept {
+void clear_if_torn(driver::Snapshot<T>& snapshot) noexcept {
   T value;
   if (snapshot.count() > 0 && !snapshot.load(value, 1)) snapshot.store({});
 }
@@ -42,14 +42,14 @@ std::uint64_t lay_out(const SharedScene& scene, std::size_t ring_ticks, SharedHe
   std::size_t shaped = 0, splits = 0;
   for (const auto& object : scene.objects) {
     if (!object.shaped) continue;
-    shaped += object.vertex_count + object.splits_most;
-    splits += object.splits_most;
+    shaped += object.vertex_count + object.max_splits;
+    splits += object.max_splits;
   }
   lay(head.objects, scene.objects.size(), sizeof(SharedObject));
   lay(head.knobs, scene.knobs.size(), sizeof(SharedKnob));
   lay(head.vertices, scene.vertices.size(), sizeof(SharedVertex));
   lay(head.triangles, scene.triangles.size(), sizeof(SharedTriangle));
-  lay(head.field, std::min(scene.field.size(), kFieldSamplesMost), sizeof(SharedFieldSample));
+  lay(head.field, std::min(scene.field.size(), kFieldSamplesMax), sizeof(SharedFieldSample));
   lay(head.shaped, shaped, sizeof(SharedShaped));
   lay(head.splits, splits, sizeof(SharedSplit));
   lay(head.ring, ring_ticks, sizeof(SharedRingSlot));
@@ -98,8 +98,8 @@ driver::Result<std::unique_ptr<SharedRun>> SharedRun::make(const std::string& na
                                                            const SharedMemory* before,
                                                            const SharedScene& scene,
                                                            std::size_t ring_ticks) {
-  if (scene.objects.size() > kObjectsMost) {
-    return driver::Error{"A scene with more than " + std::to_string(kObjectsMost) +
+  if (scene.objects.size() > kObjectsMax) {
+    return driver::Error{"A scene with more than " + std::to_string(kObjectsMax) +
                          " objects cannot be shown; run it with --no-view."};
   }
   SharedHead head{};
@@ -135,11 +135,11 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   head_->paced = scene.paced ? 1 : 0;
   head_->restarts = scene.restarts ? 1 : 0;
   last_hand_.p_WH.fill(std::numeric_limits<double>::quiet_NaN());
-  live_->requests.speed.store(kSpeedUnasked);
-  live_->requests.loop.store(kLoopUnasked);
+  live_->requests.speed.store(kSpeedUnset);
+  live_->requests.loop.store(kLoopUnset);
   put(scene.name, head_->scene);
   put(scene.file, head_->scene_file);
-  head_->arm_count = std::min(scene.arms.size(), kArmsMost);
+  head_->arm_count = std::min(scene.arms.size(), kArmsMax);
   for (std::size_t i = 0; i < head_->arm_count; ++i) put_arm(scene.arms[i], head_->arms[i]);
 
   const auto objects = table_in<SharedObject>(memory, head_->objects);
@@ -160,9 +160,9 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
     to.first_shaped = shaped;
     to.first_split = splits;
     if (object.shaped) {
-      to.splits_most = object.splits_most;
-      shaped += object.vertex_count + object.splits_most;
-      splits += object.splits_most;
+      to.max_splits = object.max_splits;
+      shaped += object.vertex_count + object.max_splits;
+      splits += object.max_splits;
     }
     to.crease_angle = object.crease_angle;
     put(object.texture, to.texture);
@@ -174,8 +174,8 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     put(knobs_[i].name, knobs[i].name);
     put(knobs_[i].unit, knobs[i].unit);
-    knobs[i].least = knobs_[i].least;
-    knobs[i].most = knobs_[i].most;
+    knobs[i].min = knobs_[i].min;
+    knobs[i].max = knobs_[i].max;
     knobs[i].initial = knobs_[i].initial;
     live_->knobs[i].wanted.store(knobs_[i].initial);
     live_->knobs[i].now.store(knobs_[i].initial);
@@ -257,7 +257,7 @@ void SharedRun::set_recording_path(const std::string& path) noexcept {
 std::optional<double> SharedRun::knob_wanted(std::size_t knob) const noexcept {
   const double wanted = live_->knobs[knob].wanted.load(std::memory_order_relaxed);
   // Written so that NaN is no request.
-  if (wanted >= knobs_[knob].least && wanted <= knobs_[knob].most) return wanted;
+  if (wanted >= knobs_[knob].min && wanted <= knobs_[knob].max) return wanted;
   return {};
 }
 
@@ -271,10 +271,11 @@ bool SharedRun::hand(SharedHand& hand) const noexcept {
   return true;
 }
 
-std::optional<SharedRun::RecordOrder> SharedRun::record_order_after(std::uint64_t number) const {
+std::optional<SharedRun::RecordRequest> SharedRun::record_request_after(
+    std::uint64_t number) const {
   const std::uint64_t newest = live_->requests.record_number.load(std::memory_order_acquire);
   if (newest <= number) return {};
-  RecordOrder order{.number = newest, .record = newest % 2 == 1, .path = {}};
+  RecordRequest order{.number = newest, .record = newest % 2 == 1, .path = {}};
   if (!order.record) return order;
   SharedText<1024> path{};
   // An incomplete path is ignored: a viewer is still writing it, or has died and watch_viewers
@@ -287,21 +288,21 @@ std::optional<SharedRun::RecordOrder> SharedRun::record_order_after(std::uint64_
 std::optional<double> SharedRun::speed_wanted() const noexcept {
   const double wanted = live_->requests.speed.load(std::memory_order_relaxed);
   // Written so that NaN is no request.
-  if (wanted >= kSpeedLeast && wanted <= kSpeedMost) return wanted;
+  if (wanted >= kSpeedMin && wanted <= kSpeedMax) return wanted;
   return {};
 }
 
 void SharedRun::set_pace(double speed, bool loop) noexcept {
-  double unasked_speed = kSpeedUnasked;
-  live_->requests.speed.compare_exchange_strong(unasked_speed, speed);
-  std::uint32_t unasked_loop = kLoopUnasked;
-  live_->requests.loop.compare_exchange_strong(unasked_loop, loop ? 1 : 0);
+  double unset_speed = kSpeedUnset;
+  live_->requests.speed.compare_exchange_strong(unset_speed, speed);
+  std::uint32_t unset_loop = kLoopUnset;
+  live_->requests.loop.compare_exchange_strong(unset_loop, loop ? 1 : 0);
 }
 
 void SharedRun::close() noexcept {
   live_->closed.store(1);
-  // Pairs with SharedReader::heard: either this sees the request, or the viewer sees that the run
-  // is closed.
+  // Pairs with SharedReader::check_accepted: either this sees the request, or the viewer sees that
+  // the run is closed.
   std::atomic_thread_fence(std::memory_order_seq_cst);
 }
 
@@ -311,11 +312,12 @@ void SharedRun::set_notice(const std::string& notice) noexcept {
   live_->notice.store(text);
 }
 
-std::optional<SharedRun::RestartOrder> SharedRun::restart_order_after(std::uint64_t number) const {
+std::optional<SharedRun::RestartRequest> SharedRun::restart_request_after(
+    std::uint64_t number) const {
   const std::uint64_t newest = live_->requests.restart_number.load(std::memory_order_acquire);
   SharedRestart order;
   if (newest <= number || !live_->requests.restart.load(order) || order.number != newest) return {};
-  return RestartOrder{
+  return RestartRequest{
       .number = newest,
       .scene = {order.scene.data(), strnlen(order.scene.data(), order.scene.size() - 1)}};
 }
@@ -329,20 +331,20 @@ std::vector<std::uint64_t> SharedRun::viewers() const {
 }
 
 bool SharedRun::is_viewer_alive(std::uint64_t place) const noexcept {
-  return place < kViewersMost &&
+  return place < kViewersMax &&
          memory_->locked_elsewhere(kFirstViewerByte + static_cast<std::int64_t>(place));
 }
 
 bool SharedRun::watch_viewers() noexcept {
-  for (std::size_t place = 0; place < kViewersMost; ++place) {
+  for (std::size_t place = 0; place < kViewersMax; ++place) {
     auto& viewer = live_->requests.viewers[place];
     std::uint64_t pid = viewer.load();
     if (pid != 0 && !is_viewer_alive(place)) viewer.compare_exchange_strong(pid, 0);
   }
   // If a viewer holds the turn, it is alive and will finish its request.
   if (memory_->lock(kTurnByte)) {
-    make_whole(live_->requests.restart);
-    make_whole(live_->requests.record_path);
+    clear_if_torn(live_->requests.restart);
+    clear_if_torn(live_->requests.record_path);
     release_hand();
     memory_->unlock(kTurnByte);
   }
@@ -364,7 +366,7 @@ void SharedRun::release_hand() noexcept {
 
 bool SharedRun::end_pause_of_dead() noexcept {
   std::uint32_t pause = live_->requests.pause.load();
-  if (head_->wall_clock == 1 || !is_pause(pause) || pause == kPausedByNobody ||
+  if (head_->wall_clock == 1 || !is_pause(pause) || pause == kPausedWithoutPlace ||
       is_viewer_alive(pause - 1)) {
     return false;
   }

@@ -50,7 +50,7 @@ class SharedRun final : public KnobRequests {
   void store_tick(const driver::TickRecord& record) noexcept;
   /// Stores a tick of an arm after the first, numbered from 1; ignored if there is no such arm.
   void store_tick_of(std::size_t arm, const driver::TickRecord& record) noexcept {
-    if (arm >= 1 && arm < kArmsMost) live_->others[arm - 1].store(record);
+    if (arm >= 1 && arm < kArmsMax) live_->others[arm - 1].store(record);
   }
   void store_poses(const ScenePoses& poses) noexcept { live_->poses.store(poses); }
   void store_patch(const render::BodyPatch& patch) noexcept { live_->patch.store(patch); }
@@ -100,26 +100,26 @@ class SharedRun final : public KnobRequests {
   bool hand(SharedHand& hand) const noexcept;
 
   /// Request to start or stop a recording.
-  struct RecordOrder {
+  struct RecordRequest {
     std::uint64_t number = 0;  ///< Number of the request.
     bool record = false;
     std::string path;  ///< Path of the recording; empty: chosen by the run.
   };
   /// Returns the newest request after `number`; empty if there is none. Real-time: never from the
   /// servo thread.
-  std::optional<RecordOrder> record_order_after(std::uint64_t number) const;
+  std::optional<RecordRequest> record_request_after(std::uint64_t number) const;
   /// Request to restart the run.
-  struct RestartOrder {
+  struct RestartRequest {
     std::uint64_t number = 0;  ///< Number of the request.
     std::string scene;         ///< Scene file to run; empty: the same scene.
   };
   /// Returns the newest request after `number`; empty if there is none. Real-time: never from the
   /// servo thread.
-  std::optional<RestartOrder> restart_order_after(std::uint64_t number) const;
+  std::optional<RestartRequest> restart_request_after(std::uint64_t number) const;
   /// Sets the initial values of the requested speed and loop, unless a viewer has set them.
   void set_pace(double speed, bool loop) noexcept;
   /// Starts the run paused, if a pause was requested from the previous run just before its end.
-  void begin_paused() noexcept { live_->requests.pause.store(kPausedByNobody); }
+  void begin_paused() noexcept { live_->requests.pause.store(kPausedWithoutPlace); }
   /// Closes the run to requests: later requests of viewers are rejected. Requests made before are
   /// visible when this returns, and must be processed once more. Any thread except the servo's.
   void close() noexcept;

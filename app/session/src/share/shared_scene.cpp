@@ -92,10 +92,10 @@ bool take_object(const SharedObject& shared, const SharedHead& head,
       !within(shared.first_triangle, shared.triangle_count, head.triangles.count)) {
     return false;
   }
-  if (!within(shared.first_split, shared.splits_most, head.splits.count)) return false;
-  const std::uint64_t room = shared.vertex_count + shared.splits_most;
+  if (!within(shared.first_split, shared.max_splits, head.splits.count)) return false;
+  const std::uint64_t room = shared.vertex_count + shared.max_splits;
   if (shared.shaped == 1 ? !within(shared.first_shaped, room, head.shaped.count)
-                         : shared.splits_most > 0) {
+                         : shared.max_splits > 0) {
     return false;
   }
   for (std::uint64_t t = 0; t < shared.triangle_count; ++t) {
@@ -117,7 +117,7 @@ bool take_object(const SharedObject& shared, const SharedHead& head,
             .triangle_count = shared.triangle_count,
             .first_shaped = shared.first_shaped,
             .first_split = shared.first_split,
-            .splits_most = shared.splits_most,
+            .max_splits = shared.max_splits,
             .crease_angle = shared.crease_angle,
             .texture = text_of(shared.texture),
             .friction = text_of(shared.friction)};
@@ -126,11 +126,11 @@ bool take_object(const SharedObject& shared, const SharedHead& head,
 
 bool take_knob(const SharedKnob& shared, SharedScene::Knob& knob) {
   // Written so that NaN is rejected.
-  if (!(shared.least < shared.most && shared.initial >= shared.least &&
-        shared.initial <= shared.most && std::isfinite(shared.most - shared.least))) {
+  if (!(shared.min < shared.max && shared.initial >= shared.min && shared.initial <= shared.max &&
+        std::isfinite(shared.max - shared.min))) {
     return false;
   }
-  knob = {text_of(shared.name), text_of(shared.unit), shared.least, shared.most, shared.initial};
+  knob = {text_of(shared.name), text_of(shared.unit), shared.min, shared.max, shared.initial};
   return true;
 }
 
@@ -188,8 +188,8 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
       !lies_in(head.ring, sizeof(SharedRingSlot), total)) {
     return broken("a table is outside of it");
   }
-  if (head.objects.count > kObjectsMost || head.knobs.count > kKnobsMost ||
-      head.field.count > kFieldSamplesMost || head.ring.count == 0 ||
+  if (head.objects.count > kObjectsMax || head.knobs.count > kKnobsMax ||
+      head.field.count > kFieldSamplesMax || head.ring.count == 0 ||
       head.vertices.count > UINT32_MAX) {
     return broken("a count is out of bounds");
   }
@@ -206,7 +206,7 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
   if (!(head.period_ns > 0) || !(head.force_max >= 0) || !std::isfinite(head.force_max)) {
     return broken("its period or force limit is invalid");
   }
-  if (head.arm_count < 1 || head.arm_count > kArmsMost)
+  if (head.arm_count < 1 || head.arm_count > kArmsMax)
     return broken("the number of arms is invalid");
   scene.arms.resize(head.arm_count);
   for (std::size_t i = 0; i < scene.arms.size(); ++i) {

@@ -29,8 +29,8 @@ struct SharedScene {
     std::size_t first_vertex = 0, vertex_count = 0;
     std::size_t first_triangle = 0, triangle_count = 0;
     std::size_t first_shaped = 0;
-    /// Range of its edge splits; splits_most is 0 if its triangles never change.
-    std::size_t first_split = 0, splits_most = 0;
+    /// Range of its edge splits; max_splits is 0 if its triangles never change.
+    std::size_t first_split = 0, max_splits = 0;
     double crease_angle = 0;  ///< Edges sharper than this stay sharp, rad.
     /// Names of its texture and friction; empty: none.
     std::string texture{}, friction{};
@@ -44,7 +44,7 @@ struct SharedScene {
   struct Knob {
     std::string name;  ///< Name, such as "OBJECT: stiffness".
     std::string unit;
-    double least = 0, most = 0, initial = 0;
+    double min = 0, max = 0, initial = 0;
   };
   /// Data for drawing an arm: see arm_lines.h.
   struct Arm {
@@ -71,10 +71,10 @@ struct SharedScene {
   bool paced = false;
   /// True if viewers can restart the run, with the same or another scene.
   bool restarts = false;
-  std::vector<Arm> arms = std::vector<Arm>(1);  ///< Arms, 1 to kArmsMost.
+  std::vector<Arm> arms = std::vector<Arm>(1);  ///< Arms, 1 to kArmsMax.
   std::vector<Object> objects;
   std::vector<Knob> knobs;
-  /// Samples of the field, at most kFieldSamplesMost; empty without a field.
+  /// Samples of the field, at most kFieldSamplesMax; empty without a field.
   std::vector<FieldSample> field;
   std::vector<Eigen::Vector3d> vertices;  ///< Initial vertices in the world, m.
   /// Triangles as indices into `vertices`, counter-clockwise from outside.

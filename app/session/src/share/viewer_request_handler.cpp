@@ -41,8 +41,8 @@ driver::Result<void> check_new_recording(const Session& session, const std::stri
 
 }  // namespace
 
-void ViewerRequestHandler::record(const SharedRun::RecordOrder& order) {
-  last_order_ = order.number;
+void ViewerRequestHandler::record(const SharedRun::RecordRequest& order) {
+  last_request_ = order.number;
   const std::string path = order.path.empty() ? recording_name(session_.scene().name) : order.path;
   if (order.record) {
     // Checked before the current recording is ended.
@@ -59,11 +59,11 @@ void ViewerRequestHandler::record(const SharedRun::RecordOrder& order) {
   }
 }
 
-void ViewerRequestHandler::hear_records() {
-  if (const auto order = session_.shared()->record_order_after(last_order_)) record(*order);
+void ViewerRequestHandler::handle_record_requests() {
+  if (const auto order = session_.shared()->record_request_after(last_request_)) record(*order);
 }
 
-void ViewerRequestHandler::hear_stop() {
+void ViewerRequestHandler::handle_stop_request() {
   const bool closed = viewer_ && viewer_->closed();
   if (closed && !ends_with_viewer_ && next_ != nullptr && next_->loops()) {
     viewer_.reset();  // so that the user is informed only once
@@ -87,23 +87,23 @@ void ViewerRequestHandler::step() {
   }
   driver::TickRecord newest;
   if (session_.newest().load(newest)) watch_.step(at_tick(newest.tick, newest.time_ns));
-  hear_records();
+  handle_record_requests();
   shared.set_recording(recording.on(), recording.dropped());
-  hear_stop();
+  handle_stop_request();
   if (next_ == nullptr) return;
   next_->step(scene::stop_asked());
-  if (shared.closed()) hear_records();  // requests made before the run was closed
+  if (shared.closed()) handle_record_requests();  // requests made before the run was closed
 }
 
 void ViewerRequestHandler::close() {
   SharedRun& shared = *session_.shared();
   shared.close();
-  hear_stop();
-  const auto order = shared.record_order_after(last_order_);
+  handle_stop_request();
+  const auto order = shared.record_request_after(last_request_);
   if (!order || !order->record) return;
-  const std::string told = "No recording was started: the run had already ended.";
-  scene::logger().error("{}", told);
-  shared.set_notice(told);
+  const std::string message = "No recording was started: the run had already ended.";
+  scene::logger().error("{}", message);
+  shared.set_notice(message);
 }
 
 std::unique_ptr<ViewerRequestHandler> open_viewer_requests(
@@ -119,7 +119,7 @@ std::unique_ptr<ViewerRequestHandler> open_viewer_requests(
     } else {
       scene::logger().error("{}", started.error().message);
     }
-  } else if (choice == ViewerChoice::kAsked && scene::talk() != scene::Talk::kQuiet) {
+  } else if (choice == ViewerChoice::kAsked && scene::verbosity() != scene::Verbosity::kQuiet) {
     scene::terminal().info("No display (DISPLAY, WAYLAND_DISPLAY): watch with `thimble view {}`.",
                            session.shared()->name());
   }

@@ -43,9 +43,9 @@ class THIMBLE_EXPORT ViewerRequestHandler {
   std::unique_ptr<ViewerProcess> take_viewer() noexcept { return std::move(viewer_); }
 
  private:
-  void record(const SharedRun::RecordOrder& order);
-  void hear_records();
-  void hear_stop();
+  void record(const SharedRun::RecordRequest& order);
+  void handle_record_requests();
+  void handle_stop_request();
 
   Session& session_;
   std::unique_ptr<ViewerProcess> viewer_;
@@ -53,7 +53,7 @@ class THIMBLE_EXPORT ViewerRequestHandler {
   bool ends_with_viewer_;
   NextRun* next_;
   bool ended_ = false;
-  std::uint64_t last_order_ = 0;
+  std::uint64_t last_request_ = 0;
 };
 
 /// Choice of opening a viewer with a run.

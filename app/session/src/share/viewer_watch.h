@@ -31,7 +31,7 @@ class THIMBLE_EXPORT ViewerWatch {
 
  private:
   struct Knob {
-    double told = 0;    // Last logged value.
+    double logged = 0;  // Last logged value.
     double newest = 0;  // Last value seen.
     int still = 0;      // Steps since it changed.
   };

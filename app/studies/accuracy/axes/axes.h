@@ -6,7 +6,7 @@ namespace thimble::studies {
 
 /// Compliance of a wall that feels rigid (24 N/mm), mm/N. Smaller values cannot be distinguished by
 /// hand, so every diagram of the stiffest wall is shaded there [PHYSICS 6, after Tan et al.].
-inline constexpr double kRigidGive = 1 / 24.0;
+inline constexpr double kRigidCompliance = 1 / 24.0;
 inline constexpr const char* kRigidWords = "the compliance of a wall that feels rigid (24 N/mm)";
 
 // One function per axis, which makes it without measuring. Real-time: never from the servo thread.

@@ -79,7 +79,7 @@ AccuracyAxis effects_axis() {
                         .knob = NAN,
                         .error = [subjects, &subject, bare] { return missing(subject, *bare); },
                         .prepare = [subjects, &subject] { return stroke_of(subject); },
-                        .beside = [subjects, bare] { return stroke_of(*bare); }};
+                        .baseline = [subjects, bare] { return stroke_of(*bare); }};
     const auto dot = name.find('.');
     point.title = name.substr(0, dot) + ": " + name.substr(dot + 1);
     std::replace(point.title.begin(), point.title.end(), '_', ' ');

@@ -35,15 +35,15 @@ struct Times {
   std::function<double(int run, int k)> period_of = {};
 };
 
-enum class Felt { kBounce, kGive };
+enum class Measure { kRestitution, kCompliance };
 
-AccuracyPoint point_of(const std::string& name, const Times& times, Felt felt) {
+AccuracyPoint point_of(const std::string& name, const Times& times, Measure felt) {
   const double latency = scene::latency_of(
       {.period = times.period, .period_spread = times.spread, .delay = times.delay});
   AccuracyPoint point{
       .name = name, .knob = 1e3 * latency, .error = {}, .prepare = [] { return ring_work({}); }};
   point.ticks = kRingTicks;
-  if (felt == Felt::kBounce) {
+  if (felt == Measure::kRestitution) {
     const Impact impact{.viscous = kViscous,
                         .stiffness = kStiffness,
                         .period = times.period,
@@ -63,7 +63,7 @@ AccuracyPoint point_of(const std::string& name, const Times& times, Felt felt) {
   return point;
 }
 
-std::vector<AccuracyLine> lines_of(Felt felt) {
+std::vector<AccuracyLine> lines_of(Measure felt) {
   AccuracyLine delay{.name = "delay", .title = "delay", .order = {}, .points = {}};
   for (const double ticks : {0.0, 0.25, 0.5, 1.0, 2.0, 3.0}) {
     delay.points.push_back(point_of(std::to_string(static_cast<int>(1000 * ticks)) + "us",
@@ -71,7 +71,7 @@ std::vector<AccuracyLine> lines_of(Felt felt) {
     delay.points.back().is_default = ticks == 1;
     delay.points.back().fits = true;
   }
-  if (felt == Felt::kGive) delay.order = 1;
+  if (felt == Measure::kCompliance) delay.order = 1;
   AccuracyLine jitter{
       .name = "jitter", .title = "ticks of uneven length", .order = {}, .points = {}};
   for (const double width : {0.2, 0.5, 0.8, 1.0, 1.4, 1.8}) {
@@ -96,7 +96,7 @@ std::vector<AccuracyLine> lines_of(Felt felt) {
   return lines;
 }
 
-AccuracyAxis axis_of(Felt felt) {
+AccuracyAxis axis_of(Measure felt) {
   AccuracyAxis axis;
   axis.knob = "latency L = E[T^2] / 2 E[T] + delay";
   axis.knob_unit = "ms";
@@ -115,7 +115,7 @@ AccuracyAxis axis_of(Felt felt) {
 }  // namespace
 
 AccuracyAxis latency_axis() {
-  AccuracyAxis axis = axis_of(Felt::kBounce);
+  AccuracyAxis axis = axis_of(Measure::kRestitution);
   axis.name = "latency";
   axis.title = "Delay and jitter: only the mean latency matters (bounce)";
   axis.metric = "speed gained by a bounce, e - 1";
@@ -129,7 +129,7 @@ AccuracyAxis latency_axis() {
 }
 
 AccuracyAxis latency_stiffness_axis() {
-  AccuracyAxis axis = axis_of(Felt::kGive);
+  AccuracyAxis axis = axis_of(Measure::kCompliance);
   axis.name = "latency_stiffness";
   axis.title = "Delay and jitter: the stiffest wall that is stable in a hand";
   axis.metric = "compliance of the stiffest wall";
@@ -137,7 +137,7 @@ AccuracyAxis latency_stiffness_axis() {
   axis.truth =
       "A wall in continuous time, which can have any stiffness. Also drawn: the law "
       "K = (b / L) u / sin u, u tan u = b L / m, for a hand of 3 N s/m.";
-  axis.threshold = kRigidGive;
+  axis.threshold = kRigidCompliance;
   axis.threshold_words = kRigidWords;
   return axis;
 }

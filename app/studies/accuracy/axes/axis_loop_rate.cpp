@@ -101,7 +101,7 @@ AccuracyAxis loop_rate_stiffness_axis() {
       "A wall in continuous time, which can have any stiffness. Also drawn: the law "
       "K = (b / L) u / sin u, u tan u = b L / m, where L is half a tick plus the "
       "delay.";
-  axis.threshold = kRigidGive;
+  axis.threshold = kRigidCompliance;
   axis.threshold_words = kRigidWords;
   axis.default_words =
       "1 kHz is the rate of full-speed USB, and the rate that textbooks require. It "

@@ -54,7 +54,7 @@ class FewModes {
                                                     drum().damping / drum().mass, kFrameTime));
         shapes_.push_back(modes[i].shape);
       } else if (rest) {
-        give_ += modes[i].shape * modes[i].shape / (modes[i].square * drum().mass);
+        compliance_ += modes[i].shape * modes[i].shape / (modes[i].square * drum().mass);
       }
     }
     x_.resize(steps_.size());
@@ -63,7 +63,7 @@ class FewModes {
 
   /// Advances by a frame under `force` (N) at the pushed node and returns its height, m.
   double step(double force) noexcept {
-    double height = give_ * force;
+    double height = compliance_ * force;
     for (std::size_t i = 0; i < steps_.size(); ++i) {
       steps_[i].apply(x_[i], v_[i], shapes_[i] * force / drum().mass);
       height += shapes_[i] * x_[i];
@@ -74,7 +74,7 @@ class FewModes {
  private:
   std::vector<render::OscillatorStep> steps_;
   std::vector<double> shapes_, x_, v_;
-  double give_ = 0;  // compliance of all omitted modes, m/N
+  double compliance_ = 0;  // compliance of all omitted modes, m/N
 };
 
 // Returns the hand's force in a frame, N. It rises and falls within 30 ms each, smoothly enough for

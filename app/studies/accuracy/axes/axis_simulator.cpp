@@ -37,8 +37,8 @@ class Stepped {
   // Dry friction that stops at zero speed.
   double rubbed(double v, double time) const noexcept {
     if (!dry_) return v;
-    const double most = Arm::kCoulomb / Arm::kMass * time;
-    return v > most ? v - most : v < -most ? v + most : 0;
+    const double max = Arm::kCoulomb / Arm::kMass * time;
+    return v > max ? v - max : v < -max ? v + max : 0;
   }
   double smooth_pull(const LineMotion& at, double force) const noexcept {
     double f = force - Arm::kViscous * at.v;

@@ -130,14 +130,14 @@ WorstTick worst_tick(const FollowerChoice& choice, double speed) {
   const auto follower = make_follower(surface(), choice);
   const auto last = follower->copy();
   WorstTick worst;
-  double most = -1;
+  double max = -1;
   follower->follow(places[0]);
   for (std::size_t i = 1; i < places.size(); ++i) {
-    last->stand_where(*follower);
+    last->copy_state(*follower);
     follower->follow(places[i]);
     // The tick that enters always needs a search.
-    if (i == 1 || !(follower->effort() > most)) continue;
-    most = follower->effort();
+    if (i == 1 || !(follower->effort() > max)) continue;
+    max = follower->effort();
     worst = {last->copy(), places[i]};
   }
   return worst;
@@ -150,7 +150,7 @@ Stroke work_of(const FollowerChoice& choice, double speed, bool follows) {
   return [worst, follower, follows] {
     double sum = 0;
     for (int i = 0; i < kRepeats; ++i) {
-      follower->stand_where(*worst.before);
+      follower->copy_state(*worst.before);
       if (follows) sum += follower->follow(worst.p_WT);
     }
     return sum;
@@ -205,7 +205,7 @@ AccuracyAxis tracking_axis() {
                           .knob = speed,
                           .error = [=] { return wrong_faces(choice, speed); },
                           .prepare = [=] { return work_of(choice, speed, true); },
-                          .beside = [=] { return work_of(choice, speed, false); }};
+                          .baseline = [=] { return work_of(choice, speed, false); }};
       point.ticks = kRepeats;
       point.is_default = choice.tracker == render::ContactChoice{}.tracker && speed == kUsualSpeed;
       line.points.push_back(std::move(point));

@@ -38,7 +38,7 @@ double error_of(const Make& make) {
 
 // Returns the compliance of the stiffest wall with a damper of 2 N s/m and a hand, mm/N: the cost
 // of the estimator's lag.
-double give_of(const Make& make) {
+double compliance_of(const Make& make) {
   RestedWall wall;
   wall.viscous = kHand;
   wall.damping = kWallDamping;
@@ -63,7 +63,7 @@ enum class Price { kForce, kLag };
 AccuracyPoint point_of(const std::string& name, double knob, const Make& make, Price price) {
   return {.name = name,
           .knob = knob,
-          .error = [=] { return price == Price::kForce ? error_of(make) : give_of(make); },
+          .error = [=] { return price == Price::kForce ? error_of(make) : compliance_of(make); },
           .prepare = [make] { return work_of(make); },
           .ticks = kTicks,
           .law = {}};
@@ -91,12 +91,12 @@ std::vector<AccuracyLine> lines_of(Price price) {
   }
   AccuracyLine levant{
       .name = "levant", .title = "Levant's differentiator", .order = {}, .points = {}};
-  for (const double most : {64.0, 16.0, 4.0, 2.0, 1.0, 0.5, 0.25}) {
+  for (const double max : {64.0, 16.0, 4.0, 2.0, 1.0, 0.5, 0.25}) {
     // Its response time is about the time in which that acceleration crosses a step.
-    const double knob = 1e3 * std::sqrt(2 * kStep / most);
+    const double knob = 1e3 * std::sqrt(2 * kStep / max);
     levant.points.push_back(point_of(
-        std::to_string(static_cast<int>(1000 * most)), knob,
-        [most] { return levant_estimate(most, kTick); }, price));
+        std::to_string(static_cast<int>(1000 * max)), knob,
+        [max] { return levant_estimate(max, kTick); }, price));
   }
   std::vector<AccuracyLine> lines;
   for (AccuracyLine* line : {&pole, &window, &adaptive, &levant}) lines.push_back(std::move(*line));
@@ -142,7 +142,7 @@ AccuracyAxis velocity_stiffness_axis() {
   axis.truth =
       "A wall in continuous time, which can have any stiffness: the latency is half "
       "a tick plus the lag of the estimate.";
-  axis.threshold = kRigidGive;
+  axis.threshold = kRigidCompliance;
   axis.threshold_words = kRigidWords;
   axis.default_words =
       "The plain difference lags less, but has more than twice the quantisation "

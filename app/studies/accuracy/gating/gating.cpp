@@ -103,7 +103,7 @@ driver::Result<GatingReport> decide_gating(const std::filesystem::path& scene, b
   const std::atomic<bool> stop{false};
   (*session)->run(stop);
   const auto full = (*session)->ticks();
-  const SeenInRun seen = look_at(full, 1 / (*session)->scene().rate);
+  const RunObservations seen = look_at(full, 1 / (*session)->scene().rate);
   GatingReport report;
   report.force = seen.force_rms;
   report.decisions = decide((*session)->scene(), seen);

@@ -22,8 +22,8 @@ bool is_felt(const driver::TickRecord& row) {
   return row.in_contact || report::length_of(row.f_sent_W) > 0;
 }
 
-SeenInRun look_at(std::span<const driver::TickRecord> rows, double tick) {
-  SeenInRun seen;
+RunObservations look_at(std::span<const driver::TickRecord> rows, double tick) {
+  RunObservations seen;
   std::vector<double> accelerations;
   double squares = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -43,7 +43,7 @@ SeenInRun look_at(std::span<const driver::TickRecord> rows, double tick) {
   return seen;
 }
 
-std::vector<GateDecision> decide(const scene::Scene& scene, const SeenInRun& seen) {
+std::vector<GateDecision> decide(const scene::Scene& scene, const RunObservations& seen) {
   double stiffness = 0, damping = 0;
   bool friction = false;
   for (const scene::SceneObject& object : scene.objects) {

@@ -25,7 +25,7 @@ struct GateDecision {
 };
 
 /// Inputs of the rules, from a run of the full model.
-struct SeenInRun {
+struct RunObservations {
   double force_rms = 0, force_max = 0;  ///< N, while there is a force
   double acceleration = 0;              ///< m/s^2, 99th percentile while there is a force
   double depth_max = 0;                 ///< m
@@ -35,11 +35,11 @@ struct SeenInRun {
 bool is_felt(const driver::TickRecord& row);
 
 /// Evaluates a run with ticks of `tick` s. Real-time: never from the servo thread.
-SeenInRun look_at(std::span<const driver::TickRecord> rows, double tick);
+RunObservations look_at(std::span<const driver::TickRecord> rows, double tick);
 
 /// Decides only by magnitudes which effects of the simulated arm a scene needs.
 /// Real-time: never from the servo thread.
-std::vector<GateDecision> decide(const scene::Scene& scene, const SeenInRun& seen);
+std::vector<GateDecision> decide(const scene::Scene& scene, const RunObservations& seen);
 
 /// Removes an effect, named as in GateDecision, from a scene. Real-time: never from the servo
 /// thread.

@@ -49,7 +49,7 @@ struct MotorSettings {
 /// Heating of the motors by their currents, and its effects. Vector components are joints.
 struct MotorHeatSettings {
   /// Largest allowed rise, K; copper melts at a rise of about 1060.
-  static constexpr double kRiseMost = 1000;
+  static constexpr double kRiseMax = 1000;
 
   /// Final temperature rise of a winding above ambient at the continuous current, K.
   double rise = 0;
@@ -98,7 +98,7 @@ struct DriveTrainSettings {
   bool compliant() const noexcept { return !stiffness.isZero(0); }
   /// Returns whether joints that are rigidly connected to their motors have friction. Real-time:
   /// safe.
-  bool joints_rub() const noexcept {
+  bool has_joint_friction() const noexcept {
     return !compliant() && !(viscous.isZero(0) && coulomb.isZero(0));
   }
   /// Returns whether there is anything to simulate. Real-time: safe.
@@ -179,11 +179,11 @@ struct FirmwareSettings {
   std::int16_t current_range_mA = 6000;
   WiringSettings wiring;  ///< Wiring, possibly with dead or swapped lines.
   /// Protocol: kPolhem, kWoody or kHfabLine.
-  driver::ArmKind speaks = driver::ArmKind::kPolhem;
+  driver::ArmKind protocol = driver::ArmKind::kPolhem;
   std::int32_t line_model = 1;  ///< Model number of the arm in text lines [S hfabapi].
   /// True for encoders with 65536 times the resolution, below a nanometre at the tip, to measure
   /// the effect of real ones. Their counts fit only into the 14-byte protocol
-  /// (hfab::FineReportWire), which then replaces `speaks`, without a gimbal.
+  /// (hfab::FineReportWire), which then replaces `protocol`, without a gimbal.
   bool ideal_encoders = false;
   double missed_edges = 0;  ///< Probability that a counter misses a step of its encoder, 0 to 1.
 };

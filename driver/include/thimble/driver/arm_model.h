@@ -14,7 +14,7 @@ namespace thimble::driver {
 /// Geometry of an arm whose tip position a vendor service or library reports. Joint vector q =
 /// p_BT, m: the axes of the base are used as joints, as in ArmSample. All functions are Real-time:
 /// safe.
-struct ToldArm {
+struct VendorPoseArm {
   /// Computes the tip (m) and the Jacobian, which is the identity.
   void forward(const Eigen::Vector3d& q, Eigen::Vector3d& p_BT,
                Eigen::Matrix3d& J_BT) const noexcept {
@@ -34,7 +34,7 @@ struct ToldArm {
 
 /// Arm geometries that Thimble supports. To add one, add a type here and a row of `kArmShapes`
 /// (arm_table.h). The compiler then reports every place that must handle it.
-using ArmGeometry = std::variant<SerialArm, LinkageArm, DeltaArm, ToldArm>;
+using ArmGeometry = std::variant<SerialArm, LinkageArm, DeltaArm, VendorPoseArm>;
 
 /// Model of an arm with any geometry.
 using ArmModel = JointModel<ArmGeometry>;

@@ -220,7 +220,7 @@ class THIMBLE_EXPORT Device {
   /// power. Real-time: safe.
   void wake_from_sleep() noexcept {
     gate_.trip(Fault::kSuspended);
-    doubt_counts();
+    require_home_pose();
   }
 
   /// Clears `home_needed`: the caller has seen the arm in its home pose. Real-time: safe.
@@ -263,7 +263,7 @@ class THIMBLE_EXPORT Device {
   bool jumped(const Eigen::Vector3d& p_WT, double since_last) noexcept;
   bool moved_unseen(const Eigen::Vector3d& p_WT, std::int64_t now_ns) const noexcept;
   bool follow_silence(std::int64_t now_ns) noexcept;
-  void doubt_counts() noexcept { home_needed_ = home_needed_ || traits_.zero_at_power_on; }
+  void require_home_pose() noexcept { home_needed_ = home_needed_ || traits_.zero_at_power_on; }
   void take_offer(std::int64_t now_ns) noexcept;
   void take_request() noexcept;
   bool retire_link() noexcept;
@@ -271,8 +271,8 @@ class THIMBLE_EXPORT Device {
   LinkWrite send(const GatedForce& force) noexcept;
   void send_zero() noexcept;
   void count_refusal(LinkStatus status) noexcept;
-  void keep_standing() noexcept;
-  bool zero_taken() const noexcept { return known_to_stand_ && f_sent_W_.isZero(0); }
+  void keep_previous_force() noexcept;
+  bool zero_taken() const noexcept { return force_confirmed_ && f_sent_W_.isZero(0); }
   void lose() noexcept;
   void watch() noexcept;
   bool wait_for_hold() noexcept;
@@ -333,7 +333,7 @@ class THIMBLE_EXPORT Device {
   bool jumped_ = false;    // True if the newest report was dropped for a jump.
   bool reported_ = false;  // True if a report arrived over this link.
   // True if f_sent_W_ is the last force that the arm accepted over this link.
-  bool known_to_stand_ = false;
+  bool force_confirmed_ = false;
   bool silent_ = false;  // True if no report arrived for the silence limit, nor since.
   bool spoken_ = false;  // True if a message was sent or refused since the last report.
   bool home_needed_ = false;

@@ -40,9 +40,9 @@ struct EnergyGuardSettings {
   double dissipation = 0;
   /// Slope c1 of the bound, N/m. Bounding: must be > 0; 2 b / T makes it passive.
   double slope = 0;
-  /// Delay from sampling to force in addition to the hold, ticks, 0 to kDelayMost.
+  /// Delay from sampling to force in addition to the hold, ticks, 0 to kDelayMax.
   int delay_ticks = 0;
-  static constexpr int kDelayMost = 15;  ///< Largest delay that the stage can handle, ticks.
+  static constexpr int kDelayMax = 15;  ///< Largest delay that the stage can handle, ticks.
 };
 
 /// Energy flow at the motors since the previous tick, computed by the device.

@@ -53,7 +53,7 @@ class THIMBLE_EXPORT HeatGuard {
   /// Returns the heat of each motor, 0 to 1.
   const std::array<double, 3>& heat() const noexcept { return heat_; }
   /// Returns the largest heat that any motor has reached.
-  double heat_most() const noexcept { return heat_most_; }
+  double max_heat() const noexcept { return max_heat_; }
   /// Returns the number of ticks in which a force was scaled down because of heat.
   std::uint64_t lowered() const noexcept { return lowered_; }
 
@@ -71,7 +71,7 @@ class THIMBLE_EXPORT HeatGuard {
   std::array<double, 3> load_{};  // (I / I_continuous)^2 of the currents sent last.
   std::array<double, 3> gain_{};  // 1 - exp(-dt / tau)
   double gain_dt_ = -1;           // Time for which gain_ was computed, s.
-  double heat_most_ = 0;
+  double max_heat_ = 0;
   bool limiting_ = false;  // True if a largest current is below the arm's limit.
   std::uint64_t lowered_ = 0;
 };

@@ -21,7 +21,7 @@ struct MotionWatchSettings {
   /// not count and the tip moves. Must be > 0. [chosen: a hand that rests on a surface leaves every
   /// count unchanged for seconds, since dry friction holds the arm; a tip that stops dead is
   /// noticed within 32 ms]
-  double hold_most = 10;
+  double max_hold = 10;
 };
 
 /// Monitors motors and encoders by the motion of the tip. Detects motors that act in the wrong

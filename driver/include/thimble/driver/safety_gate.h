@@ -33,20 +33,20 @@ class GatedForce {
 struct GateLimits {
   /// Shortest soft start, s [chosen: below 50 ms a hand feels no ramp but a knock: a stretch reflex
   /// responds after 30 to 50 ms M].
-  static constexpr double kSoftStartLeast = 0.05;
+  static constexpr double kSoftStartMin = 0.05;
   /// Fastest rise, N/s [chosen: 100 N in a tick of 1 ms, more than any arm here can exert].
-  static constexpr double kRiseMost = 1e5;
+  static constexpr double kRiseMax = 1e5;
   /// Shortest time to the whole force, s, an alternative bound for a force so large that only a
   /// test bench uses it [chosen: a tick of the fastest loop here, 20 kHz].
-  static constexpr double kRiseTimeLeast = 5e-5;
+  static constexpr double kRiseTimeMin = 5e-5;
   /// Longest gap between ticks that is not a fault, ns [chosen: twice the longest watchdog of a
   /// board, 0.5 s of the mbed one (woody_report.h)].
-  static constexpr std::int64_t kWatchdogMost_ns = 1'000'000'000;
+  static constexpr std::int64_t kWatchdogMax_ns = 1'000'000'000;
   /// Largest force limit, N [chosen: twenty times what a desk-top arm exerts; a misplaced decimal
   /// point is detected].
-  static constexpr double kForceMost = 100;
+  static constexpr double kForceMax = 100;
   /// Largest speed limit, m/s [chosen: twice what a hand reaches in a throw M].
-  static constexpr double kSpeedMost = 20;
+  static constexpr double kSpeedMax = 20;
 
   double force_max = 0;  ///< Largest force, N. Must be finite and > 0.
   double speed_max = 0;  ///< Tip speed above which the force is switched off until a restart, m/s.
@@ -84,7 +84,7 @@ struct GateCounters {
   std::uint64_t oscillations = 0;
   double oscillation_frequency = 0;  ///< Frequency of the last oscillation, Hz.
   double power_max = 0;              ///< Largest mean power on the hand, W.
-  double energy_least = 0;           ///< Lowest energy of the passivity observer, J; never above 0.
+  double min_energy = 0;             ///< Lowest energy of the passivity observer, J; never above 0.
 };
 
 class ProgramWatch;

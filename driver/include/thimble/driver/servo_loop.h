@@ -45,7 +45,7 @@ struct ServoSettings {
   std::uint64_t ticks = 0;
   /// Continues with zero force after a fault, so that positions are still read and a disconnected
   /// arm can return.
-  bool outlive_faults = false;
+  bool continue_after_faults = false;
   /// Time before a tick at which the law prepares for it (ForceLaw::prepare) if the loop is not
   /// late, ns; 0: never. Affects only the duration of a tick, not the forces.
   std::int64_t prepare_ns = 0;
@@ -88,7 +88,7 @@ class THIMBLE_EXPORT ServoLoop {
  private:
   std::optional<ServoEnd> end_with(ServoEnd end) noexcept;
   void prepare() noexcept;
-  void look_for_sleep() noexcept;
+  void detect_suspend() noexcept;
 
   Device& device_;
   Clock& clock_;

@@ -29,7 +29,7 @@ class THIMBLE_EXPORT WireLink final : public ArmLink {
   void limit_currents(const std::array<MotorDrive, 3>& limits) noexcept override;
 
  private:
-  bool came_before(const ArmReading& reading) noexcept;
+  bool is_repeated(const ArmReading& reading) noexcept;
 
   std::unique_ptr<Transport> transport_;
   std::unique_ptr<const Arm> arm_;

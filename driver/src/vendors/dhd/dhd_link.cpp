@@ -30,7 +30,7 @@ constexpr std::size_t kStatusSize = 17, kStatusForce = 5;  // [S forcedimension_
 constexpr auto kForceKept = std::chrono::milliseconds(20);
 
 /// Number of failed reads in a row after which the arm is lost. [chosen: 50 ms at 4 kHz]
-constexpr int kFailuresMost = 200;
+constexpr int kFailuresMax = 200;
 
 /// Far beyond any position of an arm, m: a position in a wrong unit is rejected.
 constexpr double kFarthest = 2;
@@ -132,16 +132,16 @@ class DhdLink final : public SlotLink {
         publish(sample);
       } else {
         reject();
-        if (++failures_ > kFailuresMost) lose();
+        if (++failures_ > kFailuresMax) lose();
       }
       send(call);
-      if (++exchanges_ % kStatusEvery == 0) look_at_force(call);
+      if (++exchanges_ % kStatusEvery == 0) check_force_enabled(call);
     }
   }
 
   /// Notifies the loop of forces that the library has switched off: by its watchdog, after too fast
   /// a motion, or by the arm's button. They stay off until the arm is reopened.
-  void look_at_force(const Functions& call) noexcept {
+  void check_force_enabled(const Functions& call) noexcept {
     std::array<int, kStatusSize> status{};
     if (call.dhdGetStatus(status.data(), kId) >= 0) refuse(status[kStatusForce] == 0);
   }

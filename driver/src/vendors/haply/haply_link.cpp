@@ -16,7 +16,7 @@ namespace {
 /// not stay silent for ever. [chosen: half of the time that counts as silence]
 constexpr std::int64_t kAnswer_ns = 10'000'000;
 
-class HaplyLink final : public SlotLink, private Traffic {
+class HaplyLink final : public SlotLink, private SocketCallbacks {
  public:
   HaplyLink(std::unique_ptr<Socket> socket, FoundInverse3 arm, Clock& clock)
       : SlotLink({.has_velocity = true, .has_orientation = arm.state.has_grip}, clock),
@@ -107,7 +107,7 @@ Result<std::vector<FoundInverse3>> find_arms(std::uint16_t port, std::int64_t ti
 
 Result<std::unique_ptr<ArmLink>> open_link(const std::string& device_id, std::uint16_t port,
                                            Clock& clock) {
-  auto socket = Socket::connect(port, kPatience_ns);
+  auto socket = Socket::connect(port, kConnectTimeout_ns);
   if (!socket) {
     return Error{socket.error().message + " Start Haply's service, or see `thimble doctor`."};
   }

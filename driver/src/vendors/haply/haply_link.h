@@ -16,13 +16,13 @@ namespace thimble::driver::haply {
 
 /// Max. time for a service to open and send its first message, ns. [chosen: it is on this computer,
 /// and a slower one could not carry a touch]
-inline constexpr std::int64_t kPatience_ns = 250'000'000;
+inline constexpr std::int64_t kConnectTimeout_ns = 250'000'000;
 
 /// Returns the arms of the service on a port of this computer. Only listens; sends nothing. Fails
 /// if no program listens there, or if it is not Haply's service. Real-time: never from the servo
 /// thread.
-THIMBLE_EXPORT Result<std::vector<FoundInverse3>> find_arms(std::uint16_t port,
-                                                            std::int64_t timeout_ns = kPatience_ns);
+THIMBLE_EXPORT Result<std::vector<FoundInverse3>> find_arms(
+    std::uint16_t port, std::int64_t timeout_ns = kConnectTimeout_ns);
 
 /// Opens the link to one arm of that service. The service gets no message before its first one has
 /// proven that it is Haply's and has this arm, ready to be used. A thread of the link exchanges

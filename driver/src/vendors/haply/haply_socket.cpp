@@ -27,9 +27,9 @@ namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::size_t kMessageMost =
+constexpr std::size_t kMessageMax =
     256 * 1024;  // bytes; a message of one arm has some hundreds. [chosen]
-constexpr auto kFarewell = std::chrono::milliseconds(100);
+constexpr auto kCloseTimeout = std::chrono::milliseconds(100);
 
 }  // namespace
 
@@ -61,7 +61,7 @@ class Socket::Connection {
     if (failed) return "No server listens on port " + std::to_string(port) + " of this computer.";
     error_code ignored;
     stream_.next_layer().set_option(tcp::no_delay(true), ignored);
-    stream_.read_message_max(kMessageMost);
+    stream_.read_message_max(kMessageMax);
     failed = asio::error::timed_out;
     stream_.async_handshake(answer_, "localhost:" + std::to_string(port), "/",
                             [&failed](const error_code& code) { failed = code; });
@@ -89,7 +89,7 @@ class Socket::Connection {
     return server.starts_with("Thimble");
   }
 
-  void serve(Traffic& traffic) {
+  void serve(SocketCallbacks& traffic) {
     traffic_ = &traffic;
     io_.restart();
     read();
@@ -146,23 +146,23 @@ class Socket::Connection {
   void listen() {
     bell_.async_read_some(asio::buffer(rings_), [this](const error_code& failed, std::size_t) {
       if (failed) return end();
-      if (leave_.load(std::memory_order_acquire)) hurry();
+      if (leave_.load(std::memory_order_acquire)) schedule_close();
       push();
       listen();
     });
   }
 
-  /// Ends the connection within kFarewell, independent of the server.
-  void hurry() {
-    if (hurries_) return;
-    hurries_ = true;
-    deadline_.expires_after(kFarewell);
+  /// Ends the connection within kCloseTimeout, independent of the server.
+  void schedule_close() {
+    if (close_scheduled_) return;
+    close_scheduled_ = true;
+    deadline_.expires_after(kCloseTimeout);
     deadline_.async_wait([this](const error_code&) { io_.stop(); });
   }
 
   void push() {
     if (writing_ || leaving_) return;
-    if (leave_.load(std::memory_order_acquire)) return say_farewell();
+    if (leave_.load(std::memory_order_acquire)) return send_last_message();
     auto message = traffic_->next_message();
     if (message) write(std::move(*message));
   }
@@ -179,7 +179,7 @@ class Socket::Connection {
     });
   }
 
-  void say_farewell() {
+  void send_last_message() {
     leaving_ = true;
     write(traffic_->last_message());
   }
@@ -198,8 +198,8 @@ class Socket::Connection {
   beast::flat_buffer buffer_;
   std::array<std::uint64_t, 1> rings_{};
   std::string first_, message_;
-  Traffic* traffic_ = nullptr;
-  bool writing_ = false, leaving_ = false, hurries_ = false;
+  SocketCallbacks* traffic_ = nullptr;
+  bool writing_ = false, leaving_ = false, close_scheduled_ = false;
   std::atomic<bool> leave_{false};
   int ring_fd_;
 };
@@ -220,7 +220,7 @@ const std::string& Socket::first() const {
 bool Socket::is_stand_in() const {
   return connection_->is_stand_in();
 }
-void Socket::serve(Traffic& traffic) {
+void Socket::serve(SocketCallbacks& traffic) {
   connection_->serve(traffic);
 }
 void Socket::ring() noexcept {

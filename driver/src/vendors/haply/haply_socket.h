@@ -19,12 +19,12 @@ inline constexpr std::uint16_t kPort = 10001;
 THIMBLE_EXPORT std::uint16_t port_of_user();
 
 /// Callbacks of a socket while it is served, called by the serving thread.
-class Traffic {
+class SocketCallbacks {
  public:
-  Traffic() = default;
-  Traffic(const Traffic&) = delete;
-  Traffic& operator=(const Traffic&) = delete;
-  virtual ~Traffic() = default;
+  SocketCallbacks() = default;
+  SocketCallbacks(const SocketCallbacks&) = delete;
+  SocketCallbacks& operator=(const SocketCallbacks&) = delete;
+  virtual ~SocketCallbacks() = default;
 
   virtual void received(std::string_view text) = 0;       ///< A message arrived.
   virtual std::optional<std::string> next_message() = 0;  ///< Returns a message to send, if any.
@@ -50,7 +50,7 @@ class Socket {
   /// --serve haply`), which has no Inverse3. Real-time: never from the servo thread.
   bool is_stand_in() const;
   /// Reads and writes until `leave` or until the other side is lost. Run it in its own thread.
-  void serve(Traffic& traffic);
+  void serve(SocketCallbacks& traffic);
   /// Wakes `serve`, which then asks for the next message. Real-time: safe; never waits.
   void ring() noexcept;
   /// Makes `serve` send the last message, close, and return, within a tenth of a second. From any

@@ -23,7 +23,7 @@ constexpr auto kForceKept = std::chrono::milliseconds(20);
 /// is a fault]
 constexpr auto kRefused = std::chrono::milliseconds(100);
 /// Max. wait at the end for the frame with zero force.
-constexpr auto kFarewell = std::chrono::milliseconds(200);
+constexpr auto kCloseTimeout = std::chrono::milliseconds(200);
 /// Interval and number of checks whether the device is calibrated.
 constexpr auto kLook = std::chrono::milliseconds(10);
 constexpr int kLooksAtOpening = 50, kLooksAtCalibration = 500;
@@ -100,8 +100,8 @@ class OpenDevice {
 class HdLink final : public SlotLink {
  public:
   /// Precondition: the caller holds the owner's mutex.
-  HdLink(OpenDevice device, const ArmTraits& traits, double force_most, Clock& clock)
-      : SlotLink(traits, clock, force_most), device_(std::move(device)) {
+  HdLink(OpenDevice device, const ArmTraits& traits, double max_force, Clock& clock)
+      : SlotLink(traits, clock, max_force), device_(std::move(device)) {
     owner().link = this;
     task_ = call().hdScheduleAsynchronous(&HdLink::tick, this, kFirstPriority);
     call().hdStartScheduler();
@@ -118,7 +118,7 @@ class HdLink final : public SlotLink {
   void shut_down() noexcept {
     if (!device_) return;
     ends_.store(true, std::memory_order_release);
-    const auto until = steady_clock::now() + kFarewell;
+    const auto until = steady_clock::now() + kCloseTimeout;
     while (!ended_.load(std::memory_order_acquire) && steady_clock::now() < until) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }

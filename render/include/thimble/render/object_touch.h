@@ -58,7 +58,7 @@ class THIMBLE_EXPORT ObjectTouch {
   // The following functions are for observers; bodies (render/src/body) override them.
 
   /// Returns whether the surface is at its initial place: neither moved nor deformed.
-  virtual bool stands_still() const noexcept { return true; }
+  virtual bool is_static() const noexcept { return true; }
   /// Returns the number of contacts that ended with the tip inside; 0 for an object at rest, whose
   /// lost contacts can be found afterwards. Real-time: safe.
   virtual std::uint64_t lost_contacts() const noexcept { return 0; }
@@ -131,11 +131,11 @@ class ContactForceLaw {
 
  private:
   void feel(const driver::DeviceState& state, SurfaceResponse& response) noexcept {
-    if constexpr ((FootStage<Stages> || ...)) {
-      const SurfaceFoot foot = foot_of(contact_, state.p_WT);
+    if constexpr ((ClosestPointStage<Stages> || ...)) {
+      const ClosestSurfacePoint closest = closest_point_of(contact_, state.p_WT);
       const auto run = [&](auto& stage) {
-        if constexpr (requires { stage.touch_at(foot, state, response); }) {
-          stage.touch_at(foot, state, response);
+        if constexpr (requires { stage.touch_at(closest, state, response); }) {
+          stage.touch_at(closest, state, response);
         } else {
           stage.touch(state, response);
         }

@@ -48,7 +48,7 @@ class SceneTouch {
   /// loop. Real-time: safe; time grows with the objects' size.
   bool inside(const Eigen::Vector3d& p_W) const noexcept {
     for (const auto& object : objects_) {
-      if (object->stands_still() && object->inside(p_W)) return true;
+      if (object->is_static() && object->inside(p_W)) return true;
     }
     return false;
   }

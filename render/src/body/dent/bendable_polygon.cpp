@@ -69,9 +69,9 @@ void BendablePolygon::touch(std::int32_t triangle, const Eigen::Vector3d& weight
   const bool was_touching = triangle_ >= 0;
   if (triangle != triangle_) go_to(triangle);
   weights_ = weights;
-  const Eigen::Vector3d foot = point_at(*mesh_, triangle, weights);
+  const Eigen::Vector3d closest = point_at(*mesh_, triangle, weights);
   const Eigen::Vector3d last = cursor_;
-  const Eigen::Vector3d way = foot - p_WT;
+  const Eigen::Vector3d way = closest - p_WT;
   const double distance = way.norm();
   const double depth = mesh_->depth(triangle, p_WT);
   const bool below = depth > 0 && distance > 0;
@@ -104,7 +104,7 @@ void BendablePolygon::touch(std::int32_t triangle, const Eigen::Vector3d& weight
     const Eigen::Vector3d side = mesh_->position(triangle, (k + 1) % 3) - from;
     edges_[k].step(
         {.share = sum > 0 ? both / sum : 0,
-         .place = std::clamp((foot - from).dot(side) / side.squaredNorm(), kApart, 1 - kApart),
+         .place = std::clamp((closest - from).dot(side) / side.squaredNorm(), kApart, 1 - kApart),
          .cursor = cursor_,
          .from = motion_.u(corners[k]),
          .to = motion_.u(corners[(k + 1) % 3])},

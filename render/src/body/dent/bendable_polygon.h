@@ -56,7 +56,7 @@ class THIMBLE_EXPORT BendablePolygon {
   const Eigen::Vector3d& f_T_W() const noexcept { return f_T_W_; }
   /// Returns the pull of the springs at the tip that moves the cursor, N in W; all of it, whatever
   /// share the hand feels (body_pull.h). `change` is the derivative of the weights of the last
-  /// `touch` by the tip's position (TriangleFoot).
+  /// `touch` by the tip's position (TrianglePlace).
   ///
   /// With springs K_k = K w_k / (1 - w_k) the energy is sum K_k |c - u_k|^2 / 2. The pull is its
   /// gradient by the tip's position p with fixed vertices. Vertices at rest have no net force, so

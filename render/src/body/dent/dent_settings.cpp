@@ -26,7 +26,7 @@ constexpr std::array kSchemes{SpringScheme::kSymplecticEuler, SpringScheme::kVer
 void read_whole(SettingsReader& reader, std::string_view key, int& value, double least,
                 double most) {
   double number = value;
-  reader.number(key, number, {.unit = "", .least = least, .most = most, .whole = true});
+  reader.number(key, number, {.unit = "", .min = least, .max = most, .whole = true});
   value = static_cast<int>(number);
 }
 
@@ -34,15 +34,15 @@ void read_whole(SettingsReader& reader, std::string_view key, int& value, double
 
 void DentSettings::read(SettingsReader& reader, const EffectContext& context) {
   step = context.tick;
-  reader.number("mass", mass, {.unit = "kg", .least = kMassMin, .most = kMassMax});
-  reader.number("stiffness", stiffness, {.unit = "N/m", .least = 0.001, .most = kStiffnessMax});
-  reader.number("damping", damping, {.unit = "N s/m", .least = 0, .most = kDampingMax});
+  reader.number("mass", mass, {.unit = "kg", .min = kMassMin, .max = kMassMax});
+  reader.number("stiffness", stiffness, {.unit = "N/m", .min = 0.001, .max = kStiffnessMax});
+  reader.number("damping", damping, {.unit = "N s/m", .min = 0, .max = kDampingMax});
   reader.number("neighbour_stiffness", neighbour_stiffness,
-                {.unit = "N/m", .least = 0, .most = kStiffnessMax});
+                {.unit = "N/m", .min = 0, .max = kStiffnessMax});
   reader.number("neighbour_damping", neighbour_damping,
-                {.unit = "N s/m", .least = 0, .most = kDampingMax});
-  reader.number("reach", reach, {.unit = "", .least = 0.01, .most = 100});
-  reader.number("pull", pull, {.unit = "", .least = 0, .most = 1});
+                {.unit = "N s/m", .min = 0, .max = kDampingMax});
+  reader.number("reach", reach, {.unit = "", .min = 0.01, .max = 100});
+  reader.number("pull", pull, {.unit = "", .min = 0, .max = 1});
   std::size_t region = whole ? 1 : 0;
   reader.choice("region", region, {"near", "whole"});
   whole = region == 1;

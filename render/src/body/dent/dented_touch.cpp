@@ -1,6 +1,6 @@
 #include "body/dent/dented_touch.h"
 
-#include "mesh/triangle_foot.h"
+#include "mesh/triangle_place.h"
 
 namespace thimble::render {
 
@@ -14,10 +14,10 @@ driver::ForceCommand DentedTouch::update(const driver::DeviceState& state) noexc
   }
   // Weights vanish on the planes between triangles, so that the place does not jump there. A
   // tracker with other cells may be slightly beyond one.
-  const TriangleFoot foot = edge_plane_foot(dent_.mesh(), triangle, state.p_WT);
-  dent_.touch(triangle, foot.weights, state.p_WT);
+  const TrianglePlace closest = edge_plane_place(dent_.mesh(), triangle, state.p_WT);
+  dent_.touch(triangle, closest.weights, state.p_WT);
   if (dent_.motion().settings().pull > 0) {
-    command.f_T_W += pull_.force(dent_.pull_at_tip(foot.change), state.p_WT, state.v_WT,
+    command.f_T_W += pull_.force(dent_.pull_at_tip(closest.change), state.p_WT, state.v_WT,
                                  command.touch.n_W, command.touch.depth);
   }
   return command;

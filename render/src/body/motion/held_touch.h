@@ -50,7 +50,7 @@ class HeldTouch final : public ObjectTouch {
   bool inside(const Eigen::Vector3d& p_W) const noexcept override { return object_->inside(p_W); }
   const ContactMesh* mesh() const noexcept override { return object_->mesh(); }
   bool draw(BodyPatch& patch) noexcept override { return object_->draw(patch); }
-  bool stands_still() const noexcept override { return false; }
+  bool is_static() const noexcept override { return false; }
   std::uint64_t lost_contacts() const noexcept override { return object_->lost_contacts(); }
   BodyPose pose() const noexcept override { return object_->pose(); }
   const BodyShape* shape() const noexcept override { return object_->shape(); }

@@ -22,9 +22,9 @@ constexpr double kAccelerationMax = 100;  // m/s^2
 constexpr double kDampingMax = 1e3;       // N s/m, N m s
 constexpr double kTimeScaleMin = 1e-3;
 constexpr double kTimeScaleMax = 100;
-constexpr double kPositionMax = 2;   // m
-constexpr double kSpeedMax = 10;     // m/s
-constexpr double kTurningMax = 100;  // rad/s
+constexpr double kPositionMax = 2;        // m
+constexpr double kSpeedMax = 10;          // m/s
+constexpr double kAngularSpeedMax = 100;  // rad/s
 constexpr double kFrictionMax = 10;
 constexpr double kHoldMax = 1e5;       // N/m
 constexpr double kHoldForceMax = 100;  // N
@@ -119,34 +119,28 @@ void MotionChoice::read(SettingsReader& reader) {
   std::size_t ways = 0;
   reader.choice("kind", ways, {"translate", "rigid"});
   kind = static_cast<MotionKind>(ways);
-  reader.number("mass", mass,
-                {.unit = "kg", .least = kMassMin, .most = kMassMax, .required = true});
+  reader.number("mass", mass, {.unit = "kg", .min = kMassMin, .max = kMassMax, .required = true});
   reader.vector("gravity", gravity_W,
-                {.unit = "m/s^2", .least = -kAccelerationMax, .most = kAccelerationMax});
-  reader.number("damping", damping, {.unit = "N s/m", .least = 0, .most = kDampingMax});
-  reader.number("time_scale", time_scale,
-                {.unit = "", .least = kTimeScaleMin, .most = kTimeScaleMax});
-  reader.vector("velocity", v_W, {.unit = "m/s", .least = -kSpeedMax, .most = kSpeedMax});
+                {.unit = "m/s^2", .min = -kAccelerationMax, .max = kAccelerationMax});
+  reader.number("damping", damping, {.unit = "N s/m", .min = 0, .max = kDampingMax});
+  reader.number("time_scale", time_scale, {.unit = "", .min = kTimeScaleMin, .max = kTimeScaleMax});
+  reader.vector("velocity", v_W, {.unit = "m/s", .min = -kSpeedMax, .max = kSpeedMax});
   if (reader.has("reach")) {
     reach = 0;
-    reader.number("reach", reach, {.unit = "m", .least = 0, .most = kPositionMax});
+    reader.number("reach", reach, {.unit = "m", .min = 0, .max = kPositionMax});
   }
   if (reader.has("floor")) {
     floor.emplace();
-    reader.number("floor", floor->height,
-                  {.unit = "m", .least = -kPositionMax, .most = kPositionMax});
-    reader.number("floor_friction", floor->friction,
-                  {.unit = "", .least = 0, .most = kFrictionMax});
+    reader.number("floor", floor->height, {.unit = "m", .min = -kPositionMax, .max = kPositionMax});
+    reader.number("floor_friction", floor->friction, {.unit = "", .min = 0, .max = kFrictionMax});
   } else if (reader.has("floor_friction")) {
     reader.reject("floor_friction", "needs floor, the height of the floor in m");
   }
   if (reader.has("hold")) {
     grip.emplace();
-    reader.number("hold", grip->stiffness, {.unit = "N/m", .least = 1, .most = kHoldMax});
-    reader.number("hold_damping", grip->damping,
-                  {.unit = "N s/m", .least = 0, .most = kDampingMax});
-    reader.number("hold_force", grip->force_max,
-                  {.unit = "N", .least = 0.01, .most = kHoldForceMax});
+    reader.number("hold", grip->stiffness, {.unit = "N/m", .min = 1, .max = kHoldMax});
+    reader.number("hold_damping", grip->damping, {.unit = "N s/m", .min = 0, .max = kDampingMax});
+    reader.number("hold_force", grip->force_max, {.unit = "N", .min = 0.01, .max = kHoldForceMax});
   }
   for (const char* key : {"angular_damping", "angular_velocity"}) {
     if (kind == MotionKind::kTranslate && reader.has(key)) {
@@ -154,9 +148,9 @@ void MotionChoice::read(SettingsReader& reader) {
     }
   }
   reader.number("angular_damping", angular_damping,
-                {.unit = "N m s", .least = 0, .most = kDampingMax});
+                {.unit = "N m s", .min = 0, .max = kDampingMax});
   reader.vector("angular_velocity", omega_W,
-                {.unit = "rad/s", .least = -kTurningMax, .most = kTurningMax});
+                {.unit = "rad/s", .min = -kAngularSpeedMax, .max = kAngularSpeedMax});
 }
 
 Moved move_object(std::unique_ptr<ObjectTouch> surface, const TriangleMesh& mesh_W,

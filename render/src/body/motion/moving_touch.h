@@ -86,7 +86,7 @@ class MovingTouch final : public ObjectTouch {
   bool inside(const Eigen::Vector3d& p_W) const noexcept override {
     return surface_->inside(motion_.R_WB().transpose() * (p_W - motion_.p_WB()));
   }
-  bool stands_still() const noexcept override { return false; }
+  bool is_static() const noexcept override { return false; }
   std::uint64_t lost_contacts() const noexcept override { return lost_; }
   BodyPose pose() const noexcept override {
     const Eigen::Quaterniond q(motion_.R_WB());

@@ -71,7 +71,7 @@ Vector3d RigidBody::velocity_at(const Vector3d& p_W) const noexcept {
 }
 
 // Returns the velocity that the point at `arm` from C gains by an impulse f there.
-Vector3d RigidBody::give(const Vector3d& arm, const Vector3d& f) const noexcept {
+Vector3d RigidBody::velocity_response(const Vector3d& arm, const Vector3d& f) const noexcept {
   const Vector3d turn_B = (q_WB_.conjugate() * arm.cross(f)).cwiseQuotient(settings_.mass.inertia);
   return f / settings_.mass.mass + (q_WB_ * turn_B).cross(arm);
 }

@@ -72,7 +72,7 @@ class THIMBLE_EXPORT RigidBody {
   /// s, in our time) given there.
   Eigen::Vector3d gain_at(const Eigen::Vector3d& p_W,
                           const Eigen::Vector3d& impulse) const noexcept {
-    return settings_.time_scale * settings_.time_scale * give(p_W - p_WC_, impulse);
+    return settings_.time_scale * settings_.time_scale * velocity_response(p_W - p_WC_, impulse);
   }
   /// Keeps C within `reach` m of its first place: moves it back and removes the outward momentum,
   /// so that energy only falls. An invalid reach has no effect.
@@ -94,7 +94,8 @@ class THIMBLE_EXPORT RigidBody {
         free_turn_(settings.mass.inertia),
         p_WC_(settings.mass.p_WC),
         q_WB_(settings.mass.q_WB) {}
-  Eigen::Vector3d give(const Eigen::Vector3d& arm, const Eigen::Vector3d& f) const noexcept;
+  Eigen::Vector3d velocity_response(const Eigen::Vector3d& arm,
+                                    const Eigen::Vector3d& f) const noexcept;
   void kick(double time) noexcept;
   void fade() noexcept;
   void prepare_fading(double time) noexcept;

@@ -53,17 +53,18 @@ driver::Result<BodyShape> BodyShape::build(const ContactMesh& mesh, const ShapeC
   }
   if (choice.clay) {
     if (auto fit = choice.clay->check(); !fit) return fit.error();
-    constexpr double kLeast = 0;  // the touched triangle moves in any case
+    constexpr double kVerticesMin = 0;  // the touched triangle moves in any case
     const std::size_t most = choice.clay->edge > 0 ? kFinePrintMax : kPrintMax;
     const double reach = choice.clay->keeps_volume ? VolumeKeeper::kRim : 1;
     auto fit = check_size(mesh, reach > 1 ? "A print with its rim" : "A print",
-                          reach * choice.clay->radius, kLeast, most);
+                          reach * choice.clay->radius, kVerticesMin, most);
     if (!fit) return fit.error();
   }
   if (choice.snap) {
     if (auto fit = choice.snap->check(); !fit) return fit.error();
-    constexpr double kLeast = 12;  // two rings: fewer do not form a panel
-    auto fit = check_size(mesh, "A panel", choice.snap->radius, kLeast, SnapShape::kVerticesMax);
+    constexpr double kVerticesMin = 12;  // two rings: fewer do not form a panel
+    auto fit =
+        check_size(mesh, "A panel", choice.snap->radius, kVerticesMin, SnapShape::kVerticesMax);
     if (!fit) return fit.error();
   }
   return BodyShape(mesh, choice, stiffness);

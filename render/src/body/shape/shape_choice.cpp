@@ -26,27 +26,27 @@ bool positive(double x) {
 // All comparisons are written so that NaN is refused.
 
 void ClayChoice::read(SettingsReader& reader) {
-  reader.number("yield_force", yield_force, {.unit = "N", .least = 0, .most = kForceMax});
-  reader.number("radius", radius, {.unit = "m", .least = kLengthMin, .most = kLengthMax});
+  reader.number("yield_force", yield_force, {.unit = "N", .min = 0, .max = kForceMax});
+  reader.number("radius", radius, {.unit = "m", .min = kLengthMin, .max = kLengthMax});
   if (reader.has("flow_rate")) {
     flow_rate = 0;
-    reader.number("flow_rate", flow_rate, {.unit = "m/s", .least = 1e-6, .most = kSpeedMax});
+    reader.number("flow_rate", flow_rate, {.unit = "m/s", .min = 1e-6, .max = kSpeedMax});
   }
   if (reader.has("movement_limit")) {
     movement_limit = 0;
-    reader.number("movement_limit", movement_limit, {.unit = "m", .least = 0, .most = kLengthMax});
+    reader.number("movement_limit", movement_limit, {.unit = "m", .min = 0, .max = kLengthMax});
   }
   if (reader.has("edge")) {
     edge = 0;
     reader.number("edge", edge,
-                  {.unit = "m", .least = radius / PrintRefinement::kFinest, .most = kLengthMax});
+                  {.unit = "m", .min = radius / PrintRefinement::kFinest, .max = kLengthMax});
   }
   std::size_t volume = keeps_volume ? 1 : 0;
   reader.choice("volume", volume, {"free", "kept"});
   keeps_volume = volume == 1;
   if (!reader.has("triangles")) return;
   double count = triangles;
-  reader.number("triangles", count, {.unit = "", .least = 4, .most = kTrianglesMax, .whole = true});
+  reader.number("triangles", count, {.unit = "", .min = 4, .max = kTrianglesMax, .whole = true});
   if (!(edge > 0))
     reader.reject("triangles", "needs edge, the length to which triangles are split");
   triangles = static_cast<int>(count);
@@ -74,12 +74,12 @@ driver::Result<void> ClayChoice::check() const {
 }
 
 void SnapChoice::read(SettingsReader& reader) {
-  reader.number("force", force, {.unit = "N", .least = 1e-3, .most = kForceMax});
-  reader.number("depth", depth, {.unit = "m", .least = kLengthMin, .most = kLengthMax});
-  reader.number("radius", radius, {.unit = "m", .least = kLengthMin, .most = kLengthMax});
-  reader.number("speed", speed, {.unit = "m/s", .least = 1e-3, .most = kSpeedMax});
+  reader.number("force", force, {.unit = "N", .min = 1e-3, .max = kForceMax});
+  reader.number("depth", depth, {.unit = "m", .min = kLengthMin, .max = kLengthMax});
+  reader.number("radius", radius, {.unit = "m", .min = kLengthMin, .max = kLengthMax});
+  reader.number("speed", speed, {.unit = "m/s", .min = 1e-3, .max = kSpeedMax});
   double count = panels;
-  reader.number("panels", count, {.unit = "", .least = 1, .most = kPanelsMax, .whole = true});
+  reader.number("panels", count, {.unit = "", .min = 1, .max = kPanelsMax, .whole = true});
   panels = static_cast<int>(count);
   if (!(radius > depth / 2)) {
     reader.reject("radius", "must be more than half the depth, or the wall would fold");

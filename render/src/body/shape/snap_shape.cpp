@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 constexpr double kPlateau = 0.25;      // of the radius moves in as deep as the middle [chosen]
 constexpr double kPanelsApart = 1.2;   // radii between the middles of two panels, so walls remain
 constexpr double kFollow = 0.05;       // radii that the tip moves before its panel follows [chosen]
-constexpr double kHoldLeast = 0.05;    // of the profile: less does not press a panel [chosen]
-constexpr double kSmallestWay = 1e-9;  // of the depth: a smaller displacement counts as none
+constexpr double kHoldMin = 0.05;      // of the profile: less does not press a panel [chosen]
+constexpr double kDistanceMin = 1e-9;  // of the depth: a smaller displacement counts as none
 
 }  // namespace
 
@@ -115,7 +115,7 @@ double SnapShape::pull(Panel& panel, double end, double spring, double step) noe
   const double pressed = std::max(end - to, 0.0);
   released_ += spring / 2 * (pressed_before * pressed_before - pressed * pressed) -
                (panel.base.energy() - energy);
-  panel.moved = panel.moved || std::abs(to - from) > kSmallestWay * choice_.depth;
+  panel.moved = panel.moved || std::abs(to - from) > kDistanceMin * choice_.depth;
   return to - from;
 }
 
@@ -126,7 +126,7 @@ double SnapShape::press(const ContactMesh& mesh, const ShapeContact& contact,
   lead(mesh, contact);
   // Only the panel with the largest effect at the place gives way: two at once would give twice.
   Panel* pressed = nullptr;
-  double hold = kHoldLeast;
+  double hold = kHoldMin;
   for (Panel& panel : panels_) {
     const double its = hold_of(panel, contact);
     if (its > hold) {
@@ -141,7 +141,7 @@ double SnapShape::press(const ContactMesh& mesh, const ShapeContact& contact,
       // The spring's other end, as seen by the panel: energy k (way - hold u)^2 / 2.
       const double end = contact.depth / hold + panel.base.way();
       way = hold * pull(panel, end, stiffness_ * hold * hold, step);
-    } else if (!(hold_of(panel, contact) > kHoldLeast)) {
+    } else if (!(hold_of(panel, contact) > kHoldMin)) {
       pull(panel, 0, 0, step);
     }
   }
@@ -155,7 +155,7 @@ void SnapShape::rest(double step) noexcept {
     if (!panel.used) continue;
     pull(panel, 0, 0, step);
     const bool flat =
-        !panel.base.snapped() && !(std::abs(panel.base.way()) > kSmallestWay * choice_.depth);
+        !panel.base.snapped() && !(std::abs(panel.base.way()) > kDistanceMin * choice_.depth);
     if (!flat) continue;
     panel.used = false;
     panel.moved = true;

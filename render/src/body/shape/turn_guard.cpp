@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 // Minimum share of the first area, seen along the first normal: far above rounding, and small
 // enough for walls of 80 degrees around a pit. [chosen]
-constexpr double kLeastShare = 0.15;
+constexpr double kAreaShareMin = 0.15;
 
 Vector3d twice_area(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return (b - a).cross(c - a);
@@ -42,9 +42,9 @@ double TurnGuard::allowed(const ContactMesh& mesh, std::span<const Vector3d> pla
     // The area's vector is linear in the place of one corner.
     const double now = along.dot(twice_area(place, b, c));
     const double change = along.dot(way.cross(b - c));
-    if (now + change >= kLeastShare || change >= 0) continue;
+    if (now + change >= kAreaShareMin || change >= 0) continue;
     // Written so that NaN allows nothing.
-    const double share = (now - kLeastShare) / -change;
+    const double share = (now - kAreaShareMin) / -change;
     allowed = share > 0 ? std::min(allowed, share) : 0;
   }
   return allowed;

@@ -101,13 +101,13 @@ template <int kDof>
 std::string SpringMotion<kDof>::describe() const {
   const std::string name(name_of(options_.scheme));
   const double limit = largest_step(options_.scheme, network_.bounds());
-  std::string said =
+  std::string text =
       std::isfinite(limit)
           ? fmt::format("{} is stable for steps up to {:.3g} ms on this mesh", name, limit * 1e3)
           : name + " is stable for any step";
-  said += fmt::format(" (highest frequency {:.4g} rad/s). Steps per tick: {} of {:.3g} ms.",
+  text += fmt::format(" (highest frequency {:.4g} rad/s). Steps per tick: {} of {:.3g} ms.",
                       network_.bounds().omega_max, substeps_, h_ * 1e3);
-  return said;
+  return text;
 }
 
 template <int kDof>

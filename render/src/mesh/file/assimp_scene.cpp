@@ -53,7 +53,7 @@ driver::Result<TriangleMesh> part_of(const aiMesh& part) {
   return mesh;
 }
 
-void tell_what_is_left_out(const aiScene& scene, std::vector<std::string>& notes) {
+void note_omissions(const aiScene& scene, std::vector<std::string>& notes) {
   bool bones = false, lines = false;
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
     bones = bones || scene.mMeshes[i]->mNumBones > 0;
@@ -94,7 +94,7 @@ driver::Result<TriangleMesh> mesh_of_scene(const aiScene& scene, std::vector<std
   }
   auto mesh = parts.take(notes);
   if (!mesh) return mesh;
-  tell_what_is_left_out(scene, notes);
+  note_omissions(scene, notes);
   return mesh;
 }
 

@@ -17,7 +17,7 @@ constexpr std::size_t kMemoryPerByte = 200;
 
 // Writes the error sentence, or an empty one, the information of the file, and the mesh.
 void write_mesh(const driver::Result<TriangleMesh>& mesh, const MeshFileInfo& info,
-                driver::ApartWriter& out) {
+                driver::SandboxWriter& out) {
   const std::string error = mesh ? std::string() : mesh.error().message;
   out.write_array(error.data(), error.size());
   if (!mesh) return;
@@ -42,7 +42,7 @@ bool has_its_vertices(const TriangleMesh& mesh) {
 
 }  // namespace
 
-driver::ApartLimits limits_of(std::size_t bytes) {
+driver::SandboxLimits limits_of(std::size_t bytes) {
   return {.seconds = kSecondsMin + static_cast<int>(bytes / kBytesPerSecond),
           .bytes = kMemoryMin + kMemoryPerByte * bytes};
 }
@@ -55,15 +55,16 @@ driver::Error unreadable(const std::string& kind, const std::string& reason) {
 }
 
 driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::string& kind,
-                                           const driver::ApartLimits& limits, MeshFileInfo& info) {
-  const std::function<void(driver::ApartWriter&)> work = [&read](driver::ApartWriter& out) {
+                                           const driver::SandboxLimits& limits,
+                                           MeshFileInfo& info) {
+  const std::function<void(driver::SandboxWriter&)> work = [&read](driver::SandboxWriter& out) {
     MeshFileInfo found;
     const auto mesh = read(found);
     write_mesh(mesh, found, out);
   };
-  const auto done = driver::run_apart(work, limits);
+  const auto done = driver::run_in_sandbox(work, limits);
   if (!done) return unreadable(kind, "it " + done.error().message);
-  driver::ApartReader in(done->bytes());
+  driver::SandboxReader in(done->bytes());
   const driver::Error broken = unreadable(kind, "it crashes its reader");
   std::string error, notes;
   double unit = 0;

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "system/run_apart.h"
+#include "system/run_in_sandbox.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/triangle_mesh.h"
@@ -16,7 +16,7 @@ using MeshReader = std::function<driver::Result<TriangleMesh>(MeshFileInfo& info
 
 /// Returns the limits of reading a file of `bytes` bytes: twenty times the time per byte of the
 /// slowest format, and four times the memory of the hungriest.
-driver::ApartLimits limits_of(std::size_t bytes);
+driver::SandboxLimits limits_of(std::size_t bytes);
 
 /// Returns the error about a damaged file: "this is no GLTF file that can be read (it ...)".
 driver::Error unreadable(const std::string& kind, const std::string& reason);
@@ -25,6 +25,6 @@ driver::Error unreadable(const std::string& kind, const std::string& reason);
 /// or `unreadable` if the process reached its limits or crashed. Real-time: never from the servo
 /// thread.
 driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::string& kind,
-                                           const driver::ApartLimits& limits, MeshFileInfo& info);
+                                           const driver::SandboxLimits& limits, MeshFileInfo& info);
 
 }  // namespace thimble::render

@@ -149,8 +149,8 @@ std::vector<std::int32_t> weld_open_edges(TriangleMesh& mesh, double tolerance) 
   std::sort(on_edge.begin(), on_edge.end());
   on_edge.erase(std::unique(on_edge.begin(), on_edge.end()), on_edge.end());
 
-  std::vector<std::int32_t> stand_in(mesh.vertices.size());
-  std::iota(stand_in.begin(), stand_in.end(), 0);
+  std::vector<std::int32_t> replacement(mesh.vertices.size());
+  std::iota(replacement.begin(), replacement.end(), 0);
   std::vector<std::int32_t> welded;
   Places places(mesh.vertices, tolerance);
   for (const std::int32_t vertex : on_edge) {
@@ -160,15 +160,15 @@ std::vector<std::int32_t> weld_open_edges(TriangleMesh& mesh, double tolerance) 
     if (near < 0) {
       places.add(vertex);
     } else {
-      stand_in[v] = near;
+      replacement[v] = near;
       welded.push_back(vertex);
     }
   }
   if (welded.empty()) return welded;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::int32_t& v : mesh.triangles[t]) {
-      if (v >= 0 && static_cast<std::size_t>(v) < stand_in.size()) {
-        v = stand_in[static_cast<std::size_t>(v)];
+      if (v >= 0 && static_cast<std::size_t>(v) < replacement.size()) {
+        v = replacement[static_cast<std::size_t>(v)];
       }
     }
   }

@@ -33,7 +33,7 @@ MeshComponents find_components(const TriangleMesh& mesh, const std::vector<EdgeU
 struct OrientReport {
   std::size_t turned_triangles = 0;      ///< Triangles that have been turned.
   std::int32_t first_turned = -1;        ///< The first of them, -1 for none.
-  std::size_t mended_components = 0;     ///< Components that had two windings.
+  std::size_t repaired_components = 0;   ///< Components that had two windings.
   std::size_t turned_components = 0;     ///< Closed components that were wholly inside out.
   std::size_t one_sided_components = 0;  ///< Components with only one side, unchanged.
 };

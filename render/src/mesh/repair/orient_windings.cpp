@@ -110,7 +110,7 @@ OrientReport orient_mesh(TriangleMesh& mesh) {
     if (report.turned_triangles++ == 0) report.first_turned = static_cast<std::int32_t>(t);
   }
   for (std::size_t part = 0; part < parts.count; ++part) {
-    report.mended_components += was_mixed[part];
+    report.repaired_components += was_mixed[part];
     report.turned_components += parts.inside_out[part] && !was_mixed[part];
     report.one_sided_components += is_one_sided[part];
   }
@@ -122,7 +122,7 @@ std::string describe(const OrientReport& report) {
   if (report.turned_triangles > 0) {
     text = plural(report.turned_triangles, "triangle was", "triangles were") +
            " reversed (the first: triangle " + std::to_string(report.first_turned) +
-           "): " + plural(report.mended_components, "component was", "components were") +
+           "): " + plural(report.repaired_components, "component was", "components were") +
            " inconsistently oriented, " + std::to_string(report.turned_components) + " inside out.";
   }
   if (report.one_sided_components > 0) {

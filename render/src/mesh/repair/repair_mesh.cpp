@@ -91,7 +91,7 @@ class Repair {
   }
 
   template <class Where>
-  void tell(Kind kind, Where where) {
+  void record(Kind kind, Where where) {
     for (RepairChange& change : done_.changes) {
       if (change.kind == kind) {
         ++change.count;
@@ -113,7 +113,7 @@ class Repair {
     std::size_t kept = 0;
     for (std::size_t t = 0; t < done_.mesh.triangles.size(); ++t) {
       if (is_bad(t)) {
-        tell(kind, [&] { return triangle_text(t); });
+        record(kind, [&] { return triangle_text(t); });
         continue;
       }
       done_.mesh.triangles[kept] = done_.mesh.triangles[t];
@@ -134,7 +134,7 @@ class Repair {
 
   void weld() {
     for (const std::int32_t vertex : weld_open_edges(done_.mesh, tolerance_)) {
-      tell(Kind::kWeldedVertex, [&] { return vertex_text(vertex); });
+      record(Kind::kWeldedVertex, [&] { return vertex_text(vertex); });
     }
   }
 
@@ -161,25 +161,25 @@ class Repair {
 
   void close() {
     for (const std::int32_t t : close_seams(done_.mesh, tolerance_, origin_)) {
-      tell(Kind::kClosedSeam, [&] { return triangle_text(static_cast<std::size_t>(t)); });
+      record(Kind::kClosedSeam, [&] { return triangle_text(static_cast<std::size_t>(t)); });
     }
   }
 
   void split() {
     const SplitFans done = split_fans(done_.mesh, origin_);
     for (const std::int32_t v : done.vertices)
-      tell(Kind::kSplitVertex, [&] { return vertex_text(v); });
+      record(Kind::kSplitVertex, [&] { return vertex_text(v); });
     for (const std::int32_t t : done.turned) {
-      tell(Kind::kTurnedTriangle, [&] { return triangle_text(static_cast<std::size_t>(t)); });
+      record(Kind::kTurnedTriangle, [&] { return triangle_text(static_cast<std::size_t>(t)); });
     }
     for (const std::int32_t t : done.parted_edges) {
-      tell(Kind::kPartedEdge, [&] { return triangle_text(static_cast<std::size_t>(t)); });
+      record(Kind::kPartedEdge, [&] { return triangle_text(static_cast<std::size_t>(t)); });
     }
   }
 
   void fill() {
     for (const FilledHole& hole : fill_holes(done_.mesh, options_.hole_share, origin_)) {
-      tell(Kind::kFilledHole, [&] {
+      record(Kind::kFilledHole, [&] {
         std::ostringstream words;
         words << hole.edges << " edges, " << hole.width << " wide, around " << text(hole.middle);
         return words.str();
@@ -191,7 +191,7 @@ class Repair {
     const OrientReport report = orient_mesh(done_.mesh);
     const auto first = static_cast<std::size_t>(report.first_turned);
     for (std::size_t i = 0; i < report.turned_triangles; ++i) {
-      tell(Kind::kTurnedTriangle, [&] { return triangle_text(first); });
+      record(Kind::kTurnedTriangle, [&] { return triangle_text(first); });
     }
   }
 
@@ -214,7 +214,7 @@ class Repair {
     for (std::size_t v = 0; v < number.size(); ++v) {
       if (number[v] < 0) {
         if (!used_before[v]) {
-          tell(Kind::kDroppedVertex, [&] { return vertex_text(static_cast<std::int32_t>(v)); });
+          record(Kind::kDroppedVertex, [&] { return vertex_text(static_cast<std::int32_t>(v)); });
         }
         continue;
       }

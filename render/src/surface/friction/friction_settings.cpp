@@ -28,22 +28,22 @@ std::string refusal(double stiffness, double most, const std::string& remedy) {
 
 void CoulombSettings::read_sliding(SettingsReader& reader) {
   sliding = kCoefficient;
-  reader.number("coefficient", sliding, {.unit = "", .most = kCoefficientMax});
+  reader.number("coefficient", sliding, {.unit = "", .max = kCoefficientMax});
   holding = sliding;
 }
 
 void CoulombSettings::read(SettingsReader& reader, double ratio) {
   read_sliding(reader);
   holding = ratio * sliding;
-  reader.number("static_coefficient", holding, {.unit = "", .most = 2 * kCoefficientMax});
+  reader.number("static_coefficient", holding, {.unit = "", .max = 2 * kCoefficientMax});
   if (holding < sliding) {
     reader.reject("static_coefficient", "must not be below coefficient, the sliding friction");
   }
 }
 
 void ViscousSettings::read(SettingsReader& reader) {
-  reader.number("viscous", viscous, {.unit = "N s/m", .most = 20});
-  reader.number("fade_depth", fade_depth, {.unit = "m", .most = 0.1});
+  reader.number("viscous", viscous, {.unit = "N s/m", .max = 20});
+  reader.number("fade_depth", fade_depth, {.unit = "m", .max = 0.1});
 }
 
 double stick_stiffness_max(const EffectContext& context) {
@@ -62,13 +62,13 @@ double read_stick_stiffness(SettingsReader& reader, const EffectContext& context
   if (reader.has("stiffness") && reader.has("z_max")) {
     reader.reject("z_max", "cannot be combined with stiffness; remove one of them");
   } else if (reader.has("stiffness")) {
-    reader.number("stiffness", stiffness, {.unit = "N/m", .least = 1, .most = kStiffnessMax});
+    reader.number("stiffness", stiffness, {.unit = "N/m", .min = 1, .max = kStiffnessMax});
     if (stiffness > kRounding * most) {
       reader.reject("stiffness", refusal(stiffness, most, "lower it or remove it"));
     }
   } else if (reader.has("z_max")) {
     double bend = kBendMax;
-    reader.number("z_max", bend, {.unit = "m", .least = 1e-9, .most = kBendMax});
+    reader.number("z_max", bend, {.unit = "m", .min = 1e-9, .max = kBendMax});
     const double force = holding * context.force_max;
     stiffness = force / bend;
     if (!(force > 0)) {

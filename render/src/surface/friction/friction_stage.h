@@ -91,15 +91,15 @@ class FrictionStage {
       stage.law_.coulomb().set_sliding(mu);
     }>(*this, {.name = "coefficient",
                .unit = "",
-               .least = kLeastCoefficient,
-               .most = kMostCoefficient,
+               .min = kLiveCoefficientMin,
+               .max = kLiveCoefficientMax,
                .value = law_.coulomb().sliding,
                .sensitivity = {.per_force = law_.coulomb().ratio()}});
   }
 
  private:
   // Range of the live coefficient: less is not felt, more does not occur [chosen].
-  static constexpr double kLeastCoefficient = 0.01, kMostCoefficient = 1.5;
+  static constexpr double kLiveCoefficientMin = 0.01, kLiveCoefficientMax = 1.5;
 
   Law law_;
   TangentMotion motion_;

@@ -5,7 +5,7 @@ namespace thimble::render {
 void ImplicitCoulombLaw::Settings::read(SettingsReader& reader, const EffectContext& context) {
   coulomb.read_sliding(reader);
   stiffness = read_stick_stiffness(reader, context, coulomb.holding);
-  reader.number("damping", damping, {.unit = "N s/m", .most = 3});
+  reader.number("damping", damping, {.unit = "N s/m", .max = 3});
 }
 
 Eigen::Vector3d ImplicitCoulombLaw::pull(const SlideTick& tick) noexcept {

@@ -9,8 +9,8 @@ void KarnoppLaw::Settings::read(SettingsReader& reader, const EffectContext& con
   stiffness = read_stick_stiffness(reader, context, coulomb.holding);
   // Not stiffer than published unless requested: the damper adds its own latency.
   if (!reader.has("stiffness") && !reader.has("z_max")) stiffness = std::min(stiffness, 1000.0);
-  reader.number("damping", damping, {.unit = "N s/m", .most = 3});
-  reader.number("speed", speed, {.unit = "m/s", .least = 1e-3, .most = 1});
+  reader.number("damping", damping, {.unit = "N s/m", .max = 3});
+  reader.number("speed", speed, {.unit = "m/s", .min = 1e-3, .max = 1});
 }
 
 Eigen::Vector3d KarnoppLaw::pull(const SlideTick& tick) noexcept {

@@ -12,8 +12,8 @@ void LugreLaw::Settings::read(SettingsReader& reader, const EffectContext& conte
   coulomb.read(reader);
   viscous.read(reader);
   stiffness = read_stick_stiffness(reader, context, coulomb.holding);
-  reader.number("damping", damping, {.unit = "N s/m", .most = 20});
-  reader.number("stribeck_speed", stribeck_speed, {.unit = "m/s", .least = 1e-4, .most = 10});
+  reader.number("damping", damping, {.unit = "N s/m", .max = 20});
+  reader.number("stribeck_speed", stribeck_speed, {.unit = "m/s", .min = 1e-4, .max = 10});
   const double least =
       coulomb.sliding > 0 ? damping * (coulomb.holding - coulomb.sliding) / coulomb.sliding : 0;
   if (viscous.viscous < least) {

@@ -15,8 +15,8 @@ void PaperFrictionLaw::Settings::read(SettingsReader& reader, const EffectContex
   corner_frequency = smooth == Smooth::kTwice ? 10 : 30;  // [PHYSICS 2.2]
   // Above half the rate nothing is left to smooth.
   reader.number("corner_frequency", corner_frequency,
-                {.unit = "Hz", .least = 0.5, .most = 0.5 / context.tick});
-  reader.number("speed", speed, {.unit = "m/s", .least = 1e-4, .most = 10});
+                {.unit = "Hz", .min = 0.5, .max = 0.5 / context.tick});
+  reader.number("speed", speed, {.unit = "m/s", .min = 1e-4, .max = 10});
 }
 
 Eigen::Vector3d PaperFrictionLaw::dry(const SlideTick& tick) noexcept {

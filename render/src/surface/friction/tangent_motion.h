@@ -45,9 +45,9 @@ class Turn {
   /// Carries a vector that was along the surface. If the normal turned by more than 150 degrees in
   /// one tick, it is another surface, and the result is zero. Real-time: safe.
   Eigen::Vector3d carry(const Eigen::Vector3d& v) const noexcept {
-    constexpr double kLeast = 0.13;  // 1 + cos 150 degrees [chosen]
+    constexpr double kScaleMin = 0.13;  // 1 + cos 150 degrees [chosen]
     // Written so that NaN gives zero.
-    if (!(scale_ > kLeast)) return Eigen::Vector3d::Zero();
+    if (!(scale_ > kScaleMin)) return Eigen::Vector3d::Zero();
     return v - v.dot(n_W_) / scale_ * sum_;
   }
 

@@ -8,8 +8,8 @@ void HeightMap::Settings::read(SettingsReader& reader, const EffectContext& cont
   TextureSettings::read(reader);
   std::filesystem::path file;
   reader.file("image", file);
-  reader.number("width", width, {.unit = "m", .least = 1e-4, .most = 1, .required = true});
-  reader.number("height", height, {.unit = "m", .least = 0, .most = 0.05, .required = true});
+  reader.number("width", width, {.unit = "m", .min = 1e-4, .max = 1, .required = true});
+  reader.number("height", height, {.unit = "m", .min = 0, .max = 0.05, .required = true});
   auto chosen = static_cast<std::size_t>(along);
   reader.choice("along", chosen, {"all", "x", "y", "z"});
   along = static_cast<Along>(chosen);
@@ -40,7 +40,7 @@ HeightMap::HeightMap(const Settings& settings, const EffectContext& context)
       form_(settings.form) {
   if (!image_) return;
   extent_ = settings.extent();
-  height_most_ = height_ * texture_headroom(extent_, context);
+  max_height_ = height_ * texture_headroom(extent_, context);
 }
 
 void HeightMap::list_settings(LiveSettings& settings) {
@@ -51,7 +51,7 @@ void HeightMap::list_settings(LiveSettings& settings) {
   settings.add<[](HeightMap& map, double height) noexcept { map.height_ = height; }>(
       *this, {.name = "height",
               .unit = "m",
-              .most = height_most_,
+              .max = max_height_,
               .value = height_,
               .sensitivity = sensitivity});
 }

@@ -14,7 +14,7 @@
 namespace thimble::render {
 
 /// A texture from a grey picture: white is in the object's surface, black deepest below. A
-/// FootStage.
+/// ClosestPointStage.
 ///
 /// The picture is projected in the object's frame, along one axis or along all three at once, each
 /// weighted by the square of the normal's component along it. It repeats. Projected along all axes,
@@ -48,14 +48,14 @@ class THIMBLE_EXPORT HeightMap {
   /// Precondition: there is an image. Real-time: never from the servo thread.
   HeightMap(const Settings& settings, const EffectContext& context);
 
-  /// See FootStage. Real-time: safe.
-  void touch_at(const SurfaceFoot& foot, const driver::DeviceState&,
+  /// See ClosestPointStage. Real-time: safe.
+  void touch_at(const ClosestSurfacePoint& closest, const driver::DeviceState&,
                 SurfaceResponse& response) const noexcept {
-    feel_height(at(foot.p_M, foot.n_M), foot, form_, response);
+    feel_height(at(closest.p_M, closest.n_M), closest, form_, response);
   }
   /// The same on a flat surface. Real-time: safe.
   void touch(const driver::DeviceState& state, SurfaceResponse& response) const noexcept {
-    touch_at(flat_foot(response.contact), state, response);
+    touch_at(flat_closest_point(response.contact), state, response);
   }
   void leave() const noexcept {}
 
@@ -72,7 +72,7 @@ class THIMBLE_EXPORT HeightMap {
   Eigen::Vector3d p_WO_;
   double pixels_per_metre_;
   double height_;
-  double height_most_ = 0;
+  double max_height_ = 0;
   TextureExtent extent_;  // of the first height
   Along along_;
   TextureForm form_;

@@ -65,19 +65,19 @@ class PngReader {
     return true;
   }
 
-  const char* said() const { return said_; }
+  const char* message() const { return message_; }
 
  private:
   [[noreturn]] static void fail(png_structp png, png_const_charp text) {
     auto* self = static_cast<PngReader*>(png_get_error_ptr(png));
-    std::snprintf(self->said_, sizeof self->said_, "%s", text);
+    std::snprintf(self->message_, sizeof self->message_, "%s", text);
     png_longjmp(png, 1);
   }
   static void ignore(png_structp, png_const_charp) {}
 
   png_structp png_;
   png_infop info_ = nullptr;
-  char said_[200] = "libpng could not be initialised";
+  char message_[200] = "libpng could not be initialised";
 };
 
 driver::Error broken(const std::filesystem::path& file, const std::string& why) {
@@ -100,14 +100,14 @@ driver::Result<HeightImage> HeightImage::load(const std::filesystem::path& file)
     return broken(file, "it cannot be opened");
   }
   PngReader reader;
-  if (!reader.begin(stream.get())) return broken(file, reader.said());
+  if (!reader.begin(stream.get())) return broken(file, reader.message());
   Picture picture{.width = reader.width(), .height = reader.height(), .grey = {}, .rows = {}};
   if (reader.row_bytes() != 2 * picture.width) return broken(file, "its pixels are not grey");
   picture.grey.resize(picture.width * picture.height);
   for (std::size_t row = 0; row < picture.height; ++row) {
     picture.rows.push_back(reinterpret_cast<png_bytep>(&picture.grey[row * picture.width]));
   }
-  if (!reader.read(picture)) return broken(file, reader.said());
+  if (!reader.read(picture)) return broken(file, reader.message());
   std::vector<float> values;
   values.reserve(picture.grey.size());
   for (std::size_t row = picture.height; row-- > 0;) {

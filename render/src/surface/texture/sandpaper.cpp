@@ -38,9 +38,9 @@ std::vector<Wave> random_waves(const Sandpaper::Settings& settings, const Effect
 
 void Sandpaper::Settings::read(SettingsReader& reader, const EffectContext& context) {
   TextureSettings::read(reader);
-  reader.number("wavelength", wavelength, {.unit = "m", .least = 1e-5, .most = 0.1});
-  reader.number("roughness", roughness, {.unit = "m", .least = 0, .most = 0.01});
-  reader.number("seed", seed, {.unit = "", .least = 0, .most = 0x1p53, .whole = true});
+  reader.number("wavelength", wavelength, {.unit = "m", .min = 1e-5, .max = 0.1});
+  reader.number("roughness", roughness, {.unit = "m", .min = 0, .max = 0.01});
+  reader.number("seed", seed, {.unit = "", .min = 0, .max = 0x1p53, .whole = true});
   if (!(wavelength > 0)) return;
   check_texture(reader, "roughness", extent(), *this, context);
 }
@@ -56,7 +56,7 @@ Sandpaper::Sandpaper(const Settings& settings, const EffectContext& context)
     : height_(random_waves(settings, context)),
       form_(settings.form),
       roughness_(settings.roughness),
-      roughness_most_(settings.roughness * texture_headroom(settings.extent(), context)),
+      max_roughness_(settings.roughness * texture_headroom(settings.extent(), context)),
       extent_(settings.extent()) {}
 
 void Sandpaper::set_roughness(double roughness) noexcept {
@@ -73,8 +73,8 @@ void Sandpaper::list_settings(LiveSettings& settings) {
   settings.add<[](Sandpaper& paper, double roughness) noexcept { paper.set_roughness(roughness); }>(
       *this, {.name = "roughness",
               .unit = "m",
-              .least = roughness_ / 50,
-              .most = roughness_most_,
+              .min = roughness_ / 50,
+              .max = max_roughness_,
               .value = roughness_,
               .sensitivity = sensitivity});
 }

@@ -11,7 +11,7 @@
 namespace thimble::render {
 
 /// A rough surface that catches the tip sideways, by the slope of a random height
-/// [BP 4.2: the sandpaper system]. A FootStage.
+/// [BP 4.2: the sandpaper system]. A ClosestPointStage.
 ///
 /// The height is a sum of plane waves in random directions with lengths in one octave around the
 /// wavelength, the same for the same seed on every machine. So it has no waves shorter than
@@ -37,14 +37,14 @@ class THIMBLE_EXPORT Sandpaper {
   /// Real-time: never from the servo thread.
   Sandpaper(const Settings& settings, const EffectContext& context);
 
-  /// See FootStage. Real-time: safe.
-  void touch_at(const SurfaceFoot& foot, const driver::DeviceState&,
+  /// See ClosestPointStage. Real-time: safe.
+  void touch_at(const ClosestSurfacePoint& closest, const driver::DeviceState&,
                 SurfaceResponse& response) const noexcept {
-    feel_height(height_.at(foot.p_M), foot, form_, response);
+    feel_height(height_.at(closest.p_M), closest, form_, response);
   }
   /// The same on a flat surface. Real-time: safe.
   void touch(const driver::DeviceState& state, SurfaceResponse& response) const noexcept {
-    touch_at(flat_foot(response.contact), state, response);
+    touch_at(flat_closest_point(response.contact), state, response);
   }
   void leave() const noexcept {}
 
@@ -58,9 +58,9 @@ class THIMBLE_EXPORT Sandpaper {
 
   WaveSum height_;
   TextureForm form_;
-  double roughness_;       // m
-  double roughness_most_;  // m
-  TextureExtent extent_;   // of the first roughness
+  double roughness_;      // m
+  double max_roughness_;  // m
+  TextureExtent extent_;  // of the first roughness
 };
 
 }  // namespace thimble::render

@@ -25,21 +25,21 @@ std::vector<Wave> waves_of(const Sines::Settings& settings, const EffectContext&
 
 void read_wave(SettingsReader& reader, Sines::Settings::One& wave) {
   reader.number("amplitude", wave.amplitude,
-                {.unit = "m", .least = 0, .most = kAmplitudeMax, .required = true});
+                {.unit = "m", .min = 0, .max = kAmplitudeMax, .required = true});
   double frequency = 0;
   if (reader.has("wavelength") == reader.has("frequency")) {
     reader.reject("", "expected either wavelength (m) or frequency (waves per metre)");
   } else if (reader.has("wavelength")) {
     reader.number("wavelength", wave.wavelength,
-                  {.unit = "m", .least = kWavelengthMin, .most = kWavelengthMax, .required = true});
+                  {.unit = "m", .min = kWavelengthMin, .max = kWavelengthMax, .required = true});
   } else {
     reader.number(
         "frequency", frequency,
-        {.unit = "1/m", .least = 1 / kWavelengthMax, .most = 1 / kWavelengthMin, .required = true});
+        {.unit = "1/m", .min = 1 / kWavelengthMax, .max = 1 / kWavelengthMin, .required = true});
     if (frequency > 0) wave.wavelength = 1 / frequency;
   }
-  reader.vector("direction", wave.direction, {.unit = "", .least = -1e3, .most = 1e3});
-  reader.number("phase", wave.phase, {.unit = "rad", .least = -10, .most = 10});
+  reader.vector("direction", wave.direction, {.unit = "", .min = -1e3, .max = 1e3});
+  reader.number("phase", wave.phase, {.unit = "rad", .min = -10, .max = 10});
   if (!(wave.direction.stableNorm() > 0)) {
     reader.reject("direction", "expected a direction, found zeros");
   }
@@ -75,7 +75,7 @@ TextureExtent Sines::Settings::extent() const noexcept {
 Sines::Sines(const Settings& settings, const EffectContext& context)
     : height_(waves_of(settings, context)),
       form_(settings.form),
-      gain_most_(texture_headroom(settings.extent(), context)),
+      max_gain_(texture_headroom(settings.extent(), context)),
       extent_(settings.extent()) {}
 
 void Sines::set_gain(double gain) noexcept {
@@ -88,8 +88,8 @@ void Sines::list_settings(LiveSettings& settings) {
   settings.add<[](Sines& sines, double gain) noexcept { sines.set_gain(gain); }>(
       *this, {.name = "gain",
               .unit = "",
-              .least = 0.02,
-              .most = gain_most_,
+              .min = 0.02,
+              .max = max_gain_,
               .value = 1,
               .sensitivity = texture_lever(extent_)});
 }

@@ -13,7 +13,7 @@
 namespace thimble::render {
 
 /// A texture of sine waves of several amplitudes, lengths and directions, which change the
-/// effective depth [BP 4.2]. A FootStage.
+/// effective depth [BP 4.2]. A ClosestPointStage.
 ///
 /// Sliding at speed v along a wave of length L, the force has a spectral line at v / L with the
 /// amplitude stiffness * amplitude. All textures: texture_height.h.
@@ -43,14 +43,14 @@ class THIMBLE_EXPORT Sines {
   /// Real-time: never from the servo thread.
   Sines(const Settings& settings, const EffectContext& context);
 
-  /// See FootStage. Real-time: safe.
-  void touch_at(const SurfaceFoot& foot, const driver::DeviceState&,
+  /// See ClosestPointStage. Real-time: safe.
+  void touch_at(const ClosestSurfacePoint& closest, const driver::DeviceState&,
                 SurfaceResponse& response) const noexcept {
-    feel_height(height_.at(foot.p_M), foot, form_, response);
+    feel_height(height_.at(closest.p_M), closest, form_, response);
   }
   /// The same on a flat surface. Real-time: safe.
   void touch(const driver::DeviceState& state, SurfaceResponse& response) const noexcept {
-    touch_at(flat_foot(response.contact), state, response);
+    touch_at(flat_closest_point(response.contact), state, response);
   }
   void leave() const noexcept {}
 
@@ -65,7 +65,7 @@ class THIMBLE_EXPORT Sines {
   WaveSum height_;
   TextureForm form_;
   double gain_ = 1;
-  double gain_most_;
+  double max_gain_;
   TextureExtent extent_;  // at a gain of 1
 };
 

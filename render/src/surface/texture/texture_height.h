@@ -30,8 +30,8 @@ inline constexpr std::array<std::string_view, 2> kTextureFormNames{"conservative
 /// The height h is that of q, the material point below the tip p (surface_response.h). So it is the
 /// same at every depth, and moves with the material. The texture changes the energy k d^2 / 2 of
 /// the spring to k (d + h(q))^2 / 2. So it adds minus the gradient of the difference to the
-/// contact's force k d n. With g = -grad d (SurfaceFoot::fall_W), s = J^T grad h and J = dq/dp the
-/// force becomes
+/// contact's force k d n. With g = -grad d (ClosestSurfacePoint::fall_W), s = J^T grad h and J =
+/// dq/dp the force becomes
 ///
 ///   k d n + k (d + h) (g - s) - k d g  =  k (d + h) (g - s) + k d (n - g).
 ///
@@ -48,8 +48,8 @@ inline constexpr std::array<std::string_view, 2> kTextureFormNames{"conservative
 ///
 /// Where the tip is above the texture, and for NaN, the depth becomes 0. The force never points
 /// into the object. The proxy stays on the object's own surface. Real-time: safe.
-inline void feel_height(const TextureHeight& texture, const SurfaceFoot& foot, TextureForm form,
-                        SurfaceResponse& response) noexcept {
+inline void feel_height(const TextureHeight& texture, const ClosestSurfacePoint& closest,
+                        TextureForm form, SurfaceResponse& response) noexcept {
   ContactState& contact = response.contact;
   const double depth = contact.depth + texture.height;
   if (form == TextureForm::kDepthOnly) {
@@ -61,8 +61,8 @@ inline void feel_height(const TextureHeight& texture, const SurfaceFoot& foot, T
     return;
   }
   const double shaded = std::min(contact.depth / depth, 2.0);
-  const Eigen::Vector3d steep =
-      foot.fall_W - foot.slope_at_tip(texture.slope_M) + shaded * (contact.n_W - foot.fall_W);
+  const Eigen::Vector3d steep = closest.fall_W - closest.slope_at_tip(texture.slope_M) +
+                                shaded * (contact.n_W - closest.fall_W);
   const double stretch = steep.norm();
   if (!(steep.dot(contact.n_W) > 0)) {
     contact.depth = 0;

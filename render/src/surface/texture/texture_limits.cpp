@@ -14,12 +14,12 @@ void TextureSettings::read(SettingsReader& reader) {
   reader.choice("form", chosen, {kTextureFormNames.begin(), kTextureFormNames.end()});
   form = static_cast<TextureForm>(chosen);
   // A hand is never faster than a few m/s.
-  reader.number("hand_speed", hand_speed, {.unit = "m/s", .least = 1e-3, .most = 5});
+  reader.number("hand_speed", hand_speed, {.unit = "m/s", .min = 1e-3, .max = 5});
 }
 
 double texture_headroom(const TextureExtent& extent, const EffectContext& context) {
-  constexpr double kMost = 3;  // chosen
-  double headroom = kMost;
+  constexpr double kHeadroomMax = 3;  // chosen
+  double headroom = kHeadroomMax;
   if (extent.slope > 0) headroom = std::min(headroom, kTextureSlopeMax / extent.slope);
   if (extent.relief > 0 && context.surface_stiffness > 0) {
     headroom = std::min(headroom, context.force_max / context.surface_stiffness / extent.relief);

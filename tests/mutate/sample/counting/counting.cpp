@@ -1,8 +1,8 @@
 #include "counting/counting.h"
 
 // Every mutant is killed except `>=`, which is equivalent.
-int at_most(int x, int most) {
-  if (x > most) return most;
+int limited(int x, int max) {
+  if (x > max) return max;
   return x;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-int at_most(int x, int most);
+int limited(int x, int max);
 int counted(int n);
 long length(const char* begin, const char* end);
 int doubled(int x);

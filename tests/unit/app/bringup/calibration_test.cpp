@@ -86,7 +86,7 @@ TEST_F(CalibrationTest, RefusesAmbiguousMovements) {
   const auto unclear =
       scene::find_calibration(file, driver::ArmKind::kPolhem, home, {same, same, same});
   ASSERT_FALSE(unclear);
-  EXPECT_NE(unclear.error().message.find("do not tell"), std::string::npos);
+  EXPECT_NE(unclear.error().message.find("do not determine"), std::string::npos);
 }
 
 TEST_F(CalibrationTest, IsStoredPerArmAndReadUnchanged) {

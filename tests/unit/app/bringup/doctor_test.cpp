@@ -49,7 +49,7 @@ class DoctorTest : public ::testing::Test {
   std::size_t troubles() const {
     std::size_t count = 0;
     for (const Finding& found : examine(system_)) {
-      EXPECT_EQ(found.health == Health::kGood, found.mend.empty()) << found.what;
+      EXPECT_EQ(found.health == Health::kGood, found.remedy.empty()) << found.what;
       count += found.health != Health::kGood;
     }
     return count;
@@ -70,7 +70,7 @@ TEST_F(DoctorTest, ReportsAMissingRule) {
   plug_woody();
   std::filesystem::remove(usb_.root() / "etc/udev/rules.d/70-thimble.rules");
   EXPECT_EQ(finding("rule is not installed").health, Health::kProblem);
-  EXPECT_NE(finding("rule is not installed").mend.find("udevadm"), std::string::npos);
+  EXPECT_NE(finding("rule is not installed").remedy.find("udevadm"), std::string::npos);
 }
 
 TEST_F(DoctorTest, ExplainsMissingAccess) {
@@ -78,24 +78,24 @@ TEST_F(DoctorTest, ExplainsMissingAccess) {
   std::filesystem::remove(usb_.root() / "dev/hidraw3");  // root has access to every existing file
   system_.in_plugdev = false;
   EXPECT_EQ(finding("have no access to /dev/hidraw3").health, Health::kProblem);
-  EXPECT_NE(finding("have no access to").mend.find("usermod -aG plugdev"), std::string::npos);
+  EXPECT_NE(finding("have no access to").remedy.find("usermod -aG plugdev"), std::string::npos);
   system_.in_plugdev = true;
-  EXPECT_NE(finding("have no access to").mend.find("udevadm trigger"), std::string::npos);
+  EXPECT_NE(finding("have no access to").remedy.find("udevadm trigger"), std::string::npos);
   std::filesystem::remove(usb_.root() / "etc/udev/rules.d/70-thimble.rules");
   EXPECT_NE(finding("have no access to").what.find("rule is missing"), std::string::npos);
 }
 
 TEST_F(DoctorTest, ReportsMissingAndConflictingDrivers) {
   usb_.plug("1-1", "1234", "0006", "WH01", 1, 2);
-  EXPECT_NE(finding("no kernel driver is bound to it").mend.find("modprobe usbhid"),
+  EXPECT_NE(finding("no kernel driver is bound to it").remedy.find("modprobe usbhid"),
             std::string::npos);
   usb_.plug("1-3", "16c0", "0483", "7654321", 1, 4);
-  EXPECT_NE(finding("no serial port").mend.find("modprobe cdc_acm"), std::string::npos);
+  EXPECT_NE(finding("no serial port").remedy.find("modprobe cdc_acm"), std::string::npos);
   plug_falcon();
   usb_.bind("1-2", 0, "ftdi_sio");
   usb_.write(usb_.device_folder("1-2") / "1-2:1.0/ttyUSB0/latency_timer", "16");
   EXPECT_NE(finding("ftdi_sio").what.find("latency timer of 16 ms"), std::string::npos);
-  EXPECT_NE(finding("ftdi_sio").mend.find("1-2:1.0"), std::string::npos);
+  EXPECT_NE(finding("ftdi_sio").remedy.find("1-2:1.0"), std::string::npos);
 }
 
 TEST_F(DoctorTest, FindsProblemsOfTheTouchLibrary) {
@@ -109,8 +109,8 @@ TEST_F(DoctorTest, FindsProblemsOfTheTouchLibrary) {
   EXPECT_FALSE(about("ModemManager"));  // without a Touch it has no effect
   EXPECT_FALSE(about("libncurses"));
   usb_.plug("1-5", "2988", "0302", "T1", 1, 6);
-  EXPECT_NE(finding("ModemManager is running").mend.find("stop ModemManager"), std::string::npos);
-  EXPECT_NE(finding("libncurses.so.5").mend.find("apt install libncurses5"), std::string::npos);
+  EXPECT_NE(finding("ModemManager is running").remedy.find("stop ModemManager"), std::string::npos);
+  EXPECT_NE(finding("libncurses.so.5").remedy.find("apt install libncurses5"), std::string::npos);
   usb_.write("usr/lib/x86_64-linux-gnu/libncurses.so.5", "");
   usb_.write("proc/812/comm", "bash\n");
   EXPECT_FALSE(about("ModemManager"));
@@ -121,19 +121,19 @@ TEST_F(DoctorTest, FindsPowerSavingAndHubs) {
   plug_woody("1-4.2");
   usb_.write(usb_.device_folder("1-4.2") / "power/control", "auto");
   usb_.plug("1-4", "05e3", "0608", "", 1, 9, "12");
-  EXPECT_NE(finding("suspend it").mend.find("1-4.2/power/control"), std::string::npos);
+  EXPECT_NE(finding("suspend it").remedy.find("1-4.2/power/control"), std::string::npos);
   EXPECT_EQ(finding("full-speed hub").health, Health::kAdvice);
   usb_.write(usb_.device_folder("1-4") / "speed", "480");
-  EXPECT_NE(finding("connected to a hub").mend.find("directly into the computer"),
+  EXPECT_NE(finding("connected to a hub").remedy.find("directly into the computer"),
             std::string::npos);
 }
 
 TEST_F(DoctorTest, FindsTheKernelsRealTimeLimits) {
   plug_woody();
   system_.real_time_priority_max = 0;
-  EXPECT_NE(finding("real-time priority").mend.find("rtprio 80"), std::string::npos);
+  EXPECT_NE(finding("real-time priority").remedy.find("rtprio 80"), std::string::npos);
   usb_.write("proc/sys/kernel/sched_rt_runtime_us", "100000");
-  EXPECT_NE(finding("100000 us").mend.find("sysctl"), std::string::npos);
+  EXPECT_NE(finding("100000 us").remedy.find("sysctl"), std::string::npos);
   usb_.write("proc/sys/kernel/sched_rt_runtime_us", "-1");  // no limit is valid
   EXPECT_EQ(troubles(), 1u);
 }
@@ -153,17 +153,17 @@ TEST_F(DoctorTest, UnknownBoardGetsItsOwnUdevRule) {
   Finding unknown = finding("board of unknown kind");
   EXPECT_EQ(unknown.health, Health::kAdvice);
   EXPECT_NE(unknown.what.find("16c0:0486, \"Teensyduino RawHID\""), std::string::npos);
-  EXPECT_NE(unknown.mend.find("--device 7654321"), std::string::npos);
-  EXPECT_NE(unknown.mend.find("board: teensy_raw_hid_64"), std::string::npos);
-  EXPECT_EQ(unknown.mend.find("udev"), std::string::npos) << "access is already granted";
+  EXPECT_NE(unknown.remedy.find("--device 7654321"), std::string::npos);
+  EXPECT_NE(unknown.remedy.find("board: teensy_raw_hid_64"), std::string::npos);
+  EXPECT_EQ(unknown.remedy.find("udev"), std::string::npos) << "access is already granted";
   std::filesystem::remove(usb_.root() / "dev/hidraw5");
   unknown = finding("board of unknown kind");
-  EXPECT_NE(unknown.mend.find("echo 'SUBSYSTEM==\"hidraw\", ATTRS{idVendor}==\"16c0\", "
-                              "ATTRS{idProduct}==\"0486\", ATTRS{serial}==\"7654321\", "
-                              "TAG+=\"uaccess\""),
+  EXPECT_NE(unknown.remedy.find("echo 'SUBSYSTEM==\"hidraw\", ATTRS{idVendor}==\"16c0\", "
+                                "ATTRS{idProduct}==\"0486\", ATTRS{serial}==\"7654321\", "
+                                "TAG+=\"uaccess\""),
             std::string::npos)
-      << unknown.mend;
-  EXPECT_NE(unknown.mend.find("/etc/udev/rules.d/71-"), std::string::npos);
+      << unknown.remedy;
+  EXPECT_NE(unknown.remedy.find("/etc/udev/rules.d/71-"), std::string::npos);
 }
 
 TEST_F(DoctorTest, NamesABoardWithoutSerialByItsSocket) {
@@ -172,8 +172,8 @@ TEST_F(DoctorTest, NamesABoardWithoutSerialByItsSocket) {
   usb_.add_hidraw("1-1.4", 0, "hidraw5", 14);
   std::filesystem::remove(usb_.root() / "dev/hidraw5");
   const Finding unknown = finding("board of unknown kind");
-  EXPECT_NE(unknown.mend.find("--device usb-1-1.4"), std::string::npos);
-  EXPECT_NE(unknown.mend.find("KERNELS==\"1-1.4\""), std::string::npos);
+  EXPECT_NE(unknown.remedy.find("--device usb-1-1.4"), std::string::npos);
+  EXPECT_NE(unknown.remedy.find("KERNELS==\"1-1.4\""), std::string::npos);
 }
 
 TEST_F(DoctorTest, BoardOfUnknownFormIsNeverOpened) {
@@ -206,7 +206,7 @@ TEST_F(DoctorTest, FindsASlowFrequencyGovernor) {
   EXPECT_EQ(finding("full speed").health, Health::kGood);
   usb_.write(kCpus + "cpu1/cpufreq/scaling_governor", "powersave");
   EXPECT_EQ(finding("governor powersave").health, Health::kAdvice);
-  EXPECT_NE(finding("governor").mend.find("performance"), std::string::npos);
+  EXPECT_NE(finding("governor").remedy.find("performance"), std::string::npos);
   EXPECT_EQ(troubles(), 1u);
 }
 

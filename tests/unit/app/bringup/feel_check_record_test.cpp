@@ -9,7 +9,7 @@
 
 #include "arm/calibration.h"
 #include "arm_policy/limits_policy.h"
-#include "real_arm_terms_home.h"
+#include "arm_policy_home.h"
 #include "thimble/scene/scene_file.h"
 #include "user_folders.h"
 
@@ -23,34 +23,36 @@ TEST_F(RealArmTermsTest, UncheckedArmStaysBelowHalfANewton) {
   const FoundArm arm = plug(ArmKind::kWoody, "W1");
   const fs::path file = home_ / "scene" / "ball.yaml";
   write(file, ball((kArms / "vintage_phantom.yaml").string(), ""));
-  const auto force_of = [&](const scene::RealArmTerms& terms) {
+  const auto force_of = [&](const scene::ArmPolicy& terms) {
     auto scene = scene::load_scene(file, {.arm = terms.arm.path});
-    EXPECT_TRUE(scene && scene::put_on_terms(*scene, file, terms));
+    EXPECT_TRUE(scene && scene::apply_arm_policy(*scene, file, terms));
     return scene->arms.front().arm.limits.force_max;
   };
-  const auto none = scene::terms_for(arm, {});
+  const auto none = scene::find_arm_policy(arm, {});
   ASSERT_TRUE(none);
   EXPECT_EQ(none->feel_check, scene::FeelCheckState::kNone);
   EXPECT_EQ(force_of(*none), 0.5);
-  EXPECT_TRUE(holds(all_of(none->told), "at most 0.5 N")) << all_of(none->told);
-  EXPECT_TRUE(holds(all_of(none->told), "thimble feel-check --device W1\n")) << all_of(none->told);
-  EXPECT_TRUE(holds(all_of(none->told), "Arm file: ")) << all_of(none->told);
+  EXPECT_TRUE(holds(all_of(none->warnings), "at most 0.5 N")) << all_of(none->warnings);
+  EXPECT_TRUE(holds(all_of(none->warnings), "thimble feel-check --device W1\n"))
+      << all_of(none->warnings);
+  EXPECT_TRUE(holds(all_of(none->warnings), "Arm file: ")) << all_of(none->warnings);
 
-  const auto unchecked = scene::terms_for(arm, {.arm_file = {}, .firmware = {}, .unchecked = true});
+  const auto unchecked =
+      scene::find_arm_policy(arm, {.arm_file = {}, .firmware = {}, .unchecked = true});
   ASSERT_TRUE(unchecked);
   EXPECT_EQ(unchecked->feel_check, scene::FeelCheckState::kUnchecked);
   EXPECT_EQ(force_of(*unchecked), 5);
-  EXPECT_TRUE(holds(all_of(unchecked->told), "UNCHECKED: W1 gets up to 5 N"));
+  EXPECT_TRUE(holds(all_of(unchecked->warnings), "UNCHECKED: W1 gets up to 5 N"));
 
-  ASSERT_TRUE(scene::keep_passed(scene::describe_checked(arm, none->arm, {})));
-  const auto passed = scene::terms_for(arm, {});
+  ASSERT_TRUE(scene::save_feel_check(scene::describe_checked(arm, none->arm, {})));
+  const auto passed = scene::find_arm_policy(arm, {});
   ASSERT_TRUE(passed);
   EXPECT_EQ(passed->feel_check, scene::FeelCheckState::kPassed);
   EXPECT_EQ(force_of(*passed), 5);
-  EXPECT_FALSE(holds(all_of(passed->told), "feel-check"));
+  EXPECT_FALSE(holds(all_of(passed->warnings), "feel-check"));
 
-  ASSERT_TRUE(scene::forget_passed("W1"));
-  EXPECT_EQ(scene::terms_for(arm, {})->feel_check, scene::FeelCheckState::kNone);
+  ASSERT_TRUE(scene::remove_feel_check("W1"));
+  EXPECT_EQ(scene::find_arm_policy(arm, {})->feel_check, scene::FeelCheckState::kNone);
 }
 
 /// Checks whether a passed feel check is still valid after a change.
@@ -60,11 +62,11 @@ class FeelCheckRecordTest : public RealArmTermsTest {
     write(scene::own_arm_folder() / "woodenhaptics.yaml", text_of(kArms / "woodenhaptics.yaml"));
     EXPECT_TRUE(scene::save_calibration("W1", calibration_));
     const auto file = scene::find_real_arm_file(arm_);
-    EXPECT_TRUE(file && scene::keep_passed(scene::describe_checked(arm_, *file, {})));
+    EXPECT_TRUE(file && scene::save_feel_check(scene::describe_checked(arm_, *file, {})));
   }
 
   static bool passed(const FoundArm& arm) {
-    const auto terms = scene::terms_for(arm, {});
+    const auto terms = scene::find_arm_policy(arm, {});
     EXPECT_TRUE(terms) << terms.error().message;
     return terms && terms->feel_check == scene::FeelCheckState::kPassed;
   }
@@ -141,10 +143,10 @@ TEST_F(FeelCheckRecordTest, FalconRecordIsValidForItsFirmwareImage) {
   write(other, "two");
   const auto file = scene::find_real_arm_file(falcon);
   ASSERT_TRUE(file) << file.error().message;
-  const auto unknown = scene::keep_passed(scene::describe_checked(falcon, *file, {}));
+  const auto unknown = scene::save_feel_check(scene::describe_checked(falcon, *file, {}));
   ASSERT_FALSE(unknown);
   EXPECT_TRUE(holds(unknown.error().message, "--firmware")) << unknown.error().message;
-  ASSERT_TRUE(scene::keep_passed(scene::describe_checked(falcon, *file, image)));
+  ASSERT_TRUE(scene::save_feel_check(scene::describe_checked(falcon, *file, image)));
   EXPECT_TRUE(scene::has_passed(scene::describe_checked(falcon, *file, image)));
   EXPECT_FALSE(scene::has_passed(scene::describe_checked(falcon, *file, other)));
   EXPECT_FALSE(scene::has_passed(scene::describe_checked(falcon, *file, {})));

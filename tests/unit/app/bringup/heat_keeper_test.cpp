@@ -59,7 +59,7 @@ TEST_F(HeatKeeperTest, PipeIsTreatedAsHot) {
   ASSERT_EQ(mkfifo(scene::heat_file("arm").c_str(), 0600), 0);
   const scene::KnownHeat known = scene::load_heat("arm", kSettings, kNow);
   EXPECT_EQ(known.heat, kHot);
-  EXPECT_NE(known.note.find("is no regular file"), std::string::npos);
+  EXPECT_NE(known.note.find("is not a regular file"), std::string::npos);
   std::filesystem::remove(scene::heat_file("arm"));
 }
 
@@ -80,7 +80,7 @@ TEST_F(HeatKeeperTest, CorruptFileIsTreatedAsHot) {
     std::ofstream(scene::heat_file("arm")) << text;
     const scene::KnownHeat known = scene::load_heat("arm", kSettings, kNow);
     EXPECT_EQ(known.heat, kHot) << text;
-    EXPECT_NE(known.note.find("cannot be understood"), std::string::npos) << text;
+    EXPECT_NE(known.note.find("is not a valid record"), std::string::npos) << text;
   }
 }
 

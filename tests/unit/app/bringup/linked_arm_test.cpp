@@ -4,14 +4,14 @@
 #include <string>
 
 #include "arm_policy/feel_check_record.h"
+#include "arm_policy_home.h"
 #include "bringup/doctor.h"
-#include "real_arm_terms_home.h"
 #include "support/mock/mock_haply_service.h"
 #include "thimble/driver/device.h"
+#include "thimble/scene/arm_policy.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/device_settings.h"
 #include "thimble/scene/real_arm.h"
-#include "thimble/scene/real_arm_terms.h"
 
 namespace thimble::bringup {
 namespace {
@@ -56,11 +56,11 @@ TEST_F(LinkedArmTest, IsFoundChosenAndOpenedWithItsOwnFile) {
   const auto chosen = scene::choose_arm(arms, "auto");
   ASSERT_TRUE(chosen && *chosen) << chosen.error().message;
 
-  auto terms = scene::terms_for(**chosen, {});
+  auto terms = scene::find_arm_policy(**chosen, {});
   ASSERT_TRUE(terms) << terms.error().message;
   EXPECT_EQ(terms->arm.path.filename(), "inverse3.yaml");
   EXPECT_EQ(terms->feel_check, scene::FeelCheckState::kNone);
-  EXPECT_EQ(terms->force_most, scene::kFeelCheckForceMax);
+  EXPECT_EQ(terms->max_force, scene::kFeelCheckForceMax);
 
   driver::WallClock clock(0);
   auto link = scene::open_link(**chosen, terms->arm.file, {}, clock);
@@ -101,14 +101,14 @@ TEST_F(LinkedArmTest, RefusesFilesOfOtherArms) {
 TEST_F(LinkedArmTest, KeepsAPassedFeelCheckOnlyForTheSameVersions) {
   serve();
   FoundArm arm = linked().at(0);
-  const auto terms = scene::terms_for(arm, {});
+  const auto terms = scene::find_arm_policy(arm, {});
   ASSERT_TRUE(terms);
-  ASSERT_TRUE(scene::keep_passed(scene::describe_checked(arm, terms->arm, {})));
-  EXPECT_EQ(scene::terms_for(arm, {})->feel_check, scene::FeelCheckState::kPassed);
+  ASSERT_TRUE(scene::save_feel_check(scene::describe_checked(arm, terms->arm, {})));
+  EXPECT_EQ(scene::find_arm_policy(arm, {})->feel_check, scene::FeelCheckState::kPassed);
   arm.software = R"({"major_version":4})";
-  EXPECT_EQ(scene::terms_for(arm, {})->feel_check, scene::FeelCheckState::kNone);
+  EXPECT_EQ(scene::find_arm_policy(arm, {})->feel_check, scene::FeelCheckState::kNone);
   arm.software.clear();
-  EXPECT_FALSE(scene::keep_passed(scene::describe_checked(arm, terms->arm, {})));
+  EXPECT_FALSE(scene::save_feel_check(scene::describe_checked(arm, terms->arm, {})));
 }
 
 TEST_F(LinkedArmTest, DoctorReportsServiceOrMissingParts) {
@@ -123,7 +123,7 @@ TEST_F(LinkedArmTest, DoctorReportsServiceOrMissingParts) {
   EXPECT_EQ(said("Inverse3 049D").health, Health::kGood);
   serve(HaplyGreeting::kUncalibrated);
   EXPECT_EQ(said("Inverse3 049D").health, Health::kProblem);
-  EXPECT_TRUE(holds(said("Inverse3 049D").mend, "Calibrate it"));
+  EXPECT_TRUE(holds(said("Inverse3 049D").remedy, "Calibrate it"));
 }
 
 TEST_F(LinkedArmTest, FileOmitsWhatTheVendorSoftwareKnows) {

@@ -3,8 +3,8 @@
 
 #include <cstdlib>
 
+#include "arm_policy_home.h"
 #include "bringup/doctor.h"
-#include "real_arm_terms_home.h"
 #include "support/mock/fake_usb.h"
 #include "support/mock/mock_dhd.h"
 #include "support/mock/mock_hd.h"
@@ -126,27 +126,27 @@ TEST_F(VendorLibraryTest, DoctorExplainsVendorLibraryAccess) {
   std::filesystem::remove(usb_.root() / "dev/ttyACM0");
   SystemInfo system;
   system.root = usb_.root();
-  const auto mend = [&](const std::string& words) {
+  const auto remedy = [&](const std::string& words) {
     for (const Finding& found : examine(system)) {
-      if (holds(found.what, words)) return found.mend;
+      if (holds(found.what, words)) return found.remedy;
     }
     return std::string("no finding contains: " + words);
   };
   // The vendors' set-up steps are not published, and our rule does not cover their arms.
-  const std::string touch = mend("TT1: you have no access to /dev/ttyACM0");
+  const std::string touch = remedy("TT1: you have no access to /dev/ttyACM0");
   EXPECT_TRUE(holds(touch, "are not published")) << touch;
   EXPECT_TRUE(holds(touch, R"(SUBSYSTEM=="tty", ATTRS{idVendor}=="2988", TAG+="uaccess")"))
       << touch;
   EXPECT_TRUE(holds(touch, "ID_MM_DEVICE_IGNORE")) << touch;
-  const std::string omega = mend("FD1: you have no access to /dev/bus/usb/001/002");
+  const std::string omega = remedy("FD1: you have no access to /dev/bus/usb/001/002");
   EXPECT_TRUE(holds(omega, R"(ENV{DEVTYPE}=="usb_device", ATTR{idVendor}=="1451")")) << omega;
-  EXPECT_TRUE(holds(mend("TX1: no kernel driver is bound to it"), "usbhid"));
+  EXPECT_TRUE(holds(remedy("TX1: no kernel driver is bound to it"), "usbhid"));
   for (const Finding& found : examine(system)) {
-    EXPECT_FALSE(holds(found.what, "T1: ") && holds(found.mend, "70-thimble")) << found.mend;
+    EXPECT_FALSE(holds(found.what, "T1: ") && holds(found.remedy, "70-thimble")) << found.remedy;
   }
   const auto chosen = scene::choose_arm(*driver::find_arms(usb_.root()), "TT1");
   ASSERT_FALSE(chosen);
-  EXPECT_TRUE(holds(chosen.error().message, "`thimble doctor` says what to do"));
+  EXPECT_TRUE(holds(chosen.error().message, "`thimble doctor` prints what to do"));
   EXPECT_FALSE(holds(chosen.error().message, "70-thimble"));
 }
 

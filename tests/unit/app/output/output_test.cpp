@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own for each test.
+/// Fixture with a separate folder for each test.
 class OutputTest : public ::testing::Test {
  protected:
   OutputTest() {
@@ -38,7 +38,7 @@ class OutputTest : public ::testing::Test {
     return folder_ / name;
   }
 
-  /// Returns how many files the folder holds.
+  /// Returns the number of files in the folder.
   std::ptrdiff_t files() const {
     return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
   }
@@ -82,12 +82,12 @@ TEST_F(OutputPathTest, NewNameIsTheSameThroughALinkedFolder) {
   EXPECT_FALSE(same_place(a.value(), c.value()));
 }
 
-TEST_F(OutputPathTest, LinksInACircleAreRefused) {
+TEST_F(OutputPathTest, LinkLoopsAreRejected) {
   fs::create_symlink("b", folder_ / "a");
   fs::create_symlink("a", folder_ / "b");
   const auto place = resolve_output(folder_ / "a");
   ASSERT_FALSE(place);
-  EXPECT_TRUE(holds(place.error().message, "circle")) << place.error().message;
+  EXPECT_TRUE(holds(place.error().message, "loop")) << place.error().message;
 }
 
 TEST_F(OutputPathTest, MissingFolderIsNamed) {
@@ -147,7 +147,7 @@ TEST_F(OutputFileTest, SecondWriterIsRefusedAfterPublication) {
 
 TEST_F(OutputFileTest, FileOfAnotherKindIsKept) {
   for (const OutputKind* kind :
-       {&kTable, &kSound, &kPng, &kSvg, &kFilm, &kMesh, &kPageFile, &kJson, &kXml, &kWebPage,
+       {&kTable, &kSound, &kPng, &kSvg, &kAnimation, &kMesh, &kPageFile, &kJson, &kXml, &kWebPage,
         &kArmFile, &kQualityTable, &kMotionTrace, &kLogFile}) {
     const fs::path path = file("scene.yaml", "# An arm, a ball: both at rest\nname: precious\n");
     const auto refused = write_file(path, *kind, "new");
@@ -208,12 +208,12 @@ TEST_F(OutputFileTest, FullDiskKeepsTheOldFileAndLeavesNoPart) {
   const fs::path path = file("a.csv", kOldTable);
   const pid_t child = fork();
   if (child == 0) {
-    // As on a full disk, no byte can be written.
+    // No byte can be written, as on a full disk.
     std::signal(SIGXFSZ, SIG_IGN);
     const rlimit none{1, 1};
     if (setrlimit(RLIMIT_FSIZE, &none) != 0) _exit(2);
     const auto written = write_file(path, kTable, kNewTable);
-    _exit(written ? 3 : holds(written.error().message, "Make room") ? 0 : 4);
+    _exit(written ? 3 : holds(written.error().message, "Free some space") ? 0 : 4);
   }
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
@@ -257,7 +257,7 @@ TEST_F(OutputFileTest, SharedLogIsNotLocked) {
 
 using OutputPlanTest = OutputTest;
 
-TEST_F(OutputPlanTest, InputIsNoOutputThroughAnyLink) {
+TEST_F(OutputPlanTest, InputIsRejectedAsOutputThroughAnyLink) {
   const fs::path input = file("in.csv", kOldTable);
   fs::create_hard_link(input, folder_ / "hard.csv");
   fs::create_symlink("in.csv", folder_ / "soft.csv");
@@ -289,7 +289,7 @@ TEST_F(OutputPlanTest, FileInAnOutputFolderIsNoOtherOutput) {
   EXPECT_FALSE(plan.begin());
 }
 
-TEST_F(OutputPlanTest, WriterTakesOverWhatThePlanKeeps) {
+TEST_F(OutputPlanTest, WriterTakesOverReservedOutputs) {
   OutputPlan plan;
   plan.write("--csv", folder_ / "a.csv", kTable);
   ASSERT_TRUE(plan.begin());
@@ -317,7 +317,7 @@ TEST_F(OutputPlanTest, FileOfAnotherKindInAFolderIsFoundAtOnce) {
   EXPECT_TRUE(holds(begun.error().message, "index.html")) << begun.error().message;
 }
 
-TEST_F(OutputPlanTest, FileIsNoFolder) {
+TEST_F(OutputPlanTest, FileIsRejectedAsFolder) {
   OutputPlan plan;
   plan.write_folder("--report", file("a_file", "x"), {});
   EXPECT_FALSE(plan.begin());
@@ -363,7 +363,7 @@ TEST_F(OutputPlanTest, FolderOfAnotherProcessIsRefused) {
   EXPECT_TRUE(FolderLock::take(folder_));
 }
 
-TEST(StandardStreams, ClosedOnesAreOpenedOnNull) {
+TEST(StandardStreams, ClosedOnesAreOpenedOnDevNull) {
   const pid_t child = fork();
   if (child == 0) {
     for (int stream = 0; stream < 3; ++stream) close(stream);

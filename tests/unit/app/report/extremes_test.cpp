@@ -19,8 +19,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Returns the first row with the minimum of a column, by comparing all pairs of rows.
 template <std::size_t kColumns>
-std::size_t first_least(const std::vector<std::array<double, kColumns>>& rows, std::size_t k,
-                        double sign) {
+std::size_t first_extreme(const std::vector<std::array<double, kColumns>>& rows, std::size_t k,
+                          double sign) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (std::none_of(rows.begin(), rows.end(),
                      [&](const auto& row) { return sign * row[k] < sign * rows[i][k]; })) {
@@ -40,10 +40,10 @@ TEST(Extremes, AreTheFirstRowsOfMinimumAndMaximum) {
       extremes.take(rows[i], i);
     }
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t least = first_least(rows, k, 1), most = first_least(rows, k, -1);
-      EXPECT_EQ(extremes.places()[2 * k], least) << round;
-      EXPECT_EQ(extremes.places()[2 * k + 1], most) << round;
-      EXPECT_EQ(extremes.range(k), rows[most][k] - rows[least][k]) << round;
+      const std::size_t minimum = first_extreme(rows, k, 1), maximum = first_extreme(rows, k, -1);
+      EXPECT_EQ(extremes.places()[2 * k], minimum) << round;
+      EXPECT_EQ(extremes.places()[2 * k + 1], maximum) << round;
+      EXPECT_EQ(extremes.range(k), rows[maximum][k] - rows[minimum][k]) << round;
     }
   }
 }

@@ -109,7 +109,7 @@ TEST(PageRows, KeepEveryTickThatFits) {
 }
 
 TEST(PageRows, KeepMinimumAndMaximumOfALongRun) {
-  constexpr std::size_t kMost = 2000;
+  constexpr std::size_t kMax = 2000;
   auto ticks = lively_run(100'000);
   // Single ticks that regular sampling would miss.
   ticks[12'345].f_sent_W = {0, 0, 4.5};
@@ -118,9 +118,9 @@ TEST(PageRows, KeepMinimumAndMaximumOfALongRun) {
   ticks[45'679].time_ns += kMillisecond * 9 / 10;
   ticks[56'789].work_ns = 700'000;
   ticks[67'891].f_sent_W = {0, 0, 0};
-  const auto kept = rows_kept(ticks, kMost);
-  EXPECT_LE(kept.size(), kMost);
-  EXPECT_GE(kept.size(), kMost / 4);
+  const auto kept = rows_kept(ticks, kMax);
+  EXPECT_LE(kept.size(), kMax);
+  EXPECT_GE(kept.size(), kMax / 4);
   EXPECT_EQ(kept.front(), 0U);
   EXPECT_EQ(kept.back(), ticks.size() - 1);
   for (std::size_t i = 1; i < kept.size(); ++i) ASSERT_LT(kept[i - 1], kept[i]);
@@ -131,22 +131,21 @@ TEST(PageRows, KeepMinimumAndMaximumOfALongRun) {
 
 TEST(PageRows, KeepMinimumAndMaximumInEveryStretch) {
   // A plot of a few hundred points must show the whole outline of noise.
-  constexpr std::size_t kCount = 50'000, kMost = 5500;
+  constexpr std::size_t kCount = 50'000, kMax = 5500;
   auto ticks = lively_run(kCount);
   support::Random random(7);
   for (TickRecord& tick : ticks) tick.f_sent_W = {0, 0, random.uniform(0.0, 5.0)};
-  const auto kept = rows_kept(ticks, kMost);
+  const auto kept = rows_kept(ticks, kMax);
   constexpr std::size_t kStretch = 1000;  // each contains many rows of the page
   for (std::size_t begin = 0; begin < kCount; begin += kStretch) {
     const auto first = std::lower_bound(kept.begin(), kept.end(), begin);
     const auto last = std::lower_bound(kept.begin(), kept.end(), begin + kStretch);
-    double most = 0, most_kept = 0;
+    double max_force = 0, max_kept = 0;
     for (std::size_t i = begin; i < begin + kStretch; ++i) {
-      most = std::max(most, size_of(ticks[i].f_sent_W));
+      max_force = std::max(max_force, size_of(ticks[i].f_sent_W));
     }
-    for (auto i = first; i != last; ++i)
-      most_kept = std::max(most_kept, size_of(ticks[*i].f_sent_W));
-    ASSERT_EQ(most_kept, most) << "from tick " << begin;
+    for (auto i = first; i != last; ++i) max_kept = std::max(max_kept, size_of(ticks[*i].f_sent_W));
+    ASSERT_EQ(max_kept, max_force) << "from tick " << begin;
   }
 }
 
@@ -168,8 +167,8 @@ std::vector<TickRecord> one_touch() {
 
 TEST(PageRows, KeepEachTickOfATouchInALongRun) {
   const auto ticks = one_touch();
-  const auto kept = rows_kept(ticks, kPageRowsMost);
-  EXPECT_LE(kept.size(), kPageRowsMost);
+  const auto kept = rows_kept(ticks, kPageRowsMax);
+  EXPECT_LE(kept.size(), kPageRowsMax);
   std::size_t touching = 0;
   for (const std::size_t i : kept) touching += ticks[i].in_contact ? 1 : 0;
   EXPECT_EQ(touching, 10'000U);
@@ -180,7 +179,7 @@ TEST(PageRows, KeepEachTickOfATouchInALongRun) {
 
 TEST(PageRows, KeepThePathOfALongRun) {
   const auto ticks = one_touch();
-  const auto kept = rows_kept(ticks, kPageRowsMost);
+  const auto kept = rows_kept(ticks, kPageRowsMax);
   // The page shows the last row until the next one.
   double off = 0;
   for (std::size_t i = 0, row = 0; i < ticks.size(); ++i) {
@@ -191,8 +190,8 @@ TEST(PageRows, KeepThePathOfALongRun) {
 }
 
 TEST(PageRows, AreNearlyAllOfARunJustTooLong) {
-  const auto kept = rows_kept(lively_run(61'000), kPageRowsMost);
-  EXPECT_LE(kept.size(), kPageRowsMost);
+  const auto kept = rows_kept(lively_run(61'000), kPageRowsMax);
+  EXPECT_LE(kept.size(), kPageRowsMax);
   EXPECT_GE(kept.size(), 59'000U);
 }
 
@@ -221,7 +220,7 @@ TEST(OutlineTrace, KeepsPeaksAndPeriodsOfMillionsOfTicks) {
   }
   trace.finish();
   const auto ticks = trace.ticks();
-  EXPECT_LE(ticks.size(), OutlineTrace::kRowsMost);
+  EXPECT_LE(ticks.size(), OutlineTrace::kRowsMax);
   double peak = 0;
   std::size_t touching = 0;
   for (std::size_t i = 0; i < ticks.size(); ++i) {
@@ -315,7 +314,7 @@ TEST(Page, MinuteAtOneKilohertzIsBelowTenMegabytes) {
   const auto arm = page_arm(touch, 0, block);
   EXPECT_EQ(arm["rows"], 60'001);  // all ticks of the touch
   EXPECT_EQ(objects[0]["triangles"], 320'000);
-  EXPECT_LE(objects[0]["drawn"].get<std::size_t>(), kPageTrianglesMost);
+  EXPECT_LE(objects[0]["drawn"].get<std::size_t>(), kPageTrianglesMax);
   constexpr std::size_t kLibraries = 1'100'000;  // three.js and dygraphs of Debian 12
   EXPECT_LT(base64(block.bytes()).size() + kLibraries, 10'000'000U);
 }
@@ -395,8 +394,8 @@ TEST(DentTrace, KeepsTheEndOfEveryDentWhenFull) {
             0);
   const auto frames = trace.frames();
   ASSERT_GT(frames.size(), 1000U);
-  EXPECT_LE(trace.points().size(), session::DentTrace::kPointsMost);
-  EXPECT_LE(trace.triangles().size(), session::DentTrace::kTrianglesMost);
+  EXPECT_LE(trace.points().size(), session::DentTrace::kPointsMax);
+  EXPECT_LE(trace.triangles().size(), session::DentTrace::kTrianglesMax);
   std::size_t gone = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const session::DentTrace::Frame& frame = frames[i];

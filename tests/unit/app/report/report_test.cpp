@@ -22,7 +22,7 @@ session::RunFigures example() {
   report.arm = "vintage_phantom";
   report.virtual_time = false;
   report.seed = 42;
-  report.rate_asked = 1000;
+  report.requested_rate = 1000;
   report.force_limit = 5;
   report.triangles = 5558;
   driver::TickRecord record;
@@ -231,9 +231,9 @@ TEST(Figure, LastLineNamesUnmetGoalsWithTheirPlace) {
 TEST(Report, SummaryNamesHotMotorsOnly) {
   session::RunFigures report = example();
   report.heat_known = true;
-  report.heat_most = 0.7;
+  report.max_heat = 0.7;
   EXPECT_EQ(summary(report).find("Heat"), std::string::npos);
-  report.heat_most = 0.93;
+  report.max_heat = 0.93;
   report.heat_lowered = 412;
   EXPECT_NE(summary(report).find("a motor reached 93 % of its limit; force reduced in 412 ticks"),
             std::string::npos);
@@ -243,7 +243,7 @@ TEST(Report, SummaryNamesTheEnergyStageIfPresent) {
   session::RunFigures report = example();
   EXPECT_EQ(summary(report).find("by the gate"), std::string::npos);
   report.energy_stage = driver::EnergyStage::kPassivity;
-  report.gate.energy_least = -0.0031;
+  report.gate.min_energy = -0.0031;
   report.gate.damped = 17;
   EXPECT_NE(
       summary(report).find("at most 3.10 mJ given beyond the energy taken; damping in 17 ticks"),

@@ -22,7 +22,7 @@ std::string content() {
   return text.str();
 }
 
-// Reads the shipped arm with one piece of text replaced, and tells what was wrong with it.
+// Reads the shipped arm with one piece of text replaced. Returns the mistakes.
 std::string mistake_with(const std::string& piece, const std::string& by) {
   std::string text = content();
   const std::size_t at = text.find(piece);
@@ -34,7 +34,7 @@ std::string mistake_with(const std::string& piece, const std::string& by) {
   return arm ? "" : arm.error().message;
 }
 
-TEST(ArmFile, ReadsTheShippedArmToTheLastConstant) {
+TEST(ArmFile, ReadsEveryConstantOfAShippedArm) {
   const auto read = scene::load_arm(kArm);
   ASSERT_TRUE(read.ok()) << read.error().message;
   const scene::ArmFile& arm = *read;
@@ -71,7 +71,7 @@ TEST(ArmFile, DeclaresAContinuousForceWhereOneIsPublished) {
   };
   EXPECT_EQ(declared("vintage_phantom"), 1.4);
   EXPECT_EQ(declared("touch"), 0.88);
-  EXPECT_EQ(declared("falcon"), 0) << "nobody has published one";
+  EXPECT_EQ(declared("falcon"), 0) << "no published value";
   EXPECT_NE(mistake_with("continuous_force: 1.4", "continuous_force: 5.1")
                 .find("continuous_force: expected at most the declared force"),
             std::string::npos);
@@ -124,22 +124,23 @@ TEST(ArmFile, NamesTheBoardsThatTheArmMayHave) {
                                                 BoardKind::kTextLines}));
   EXPECT_EQ(boards("vintage_phantom.yaml"), std::vector{BoardKind::kTextLines});
   EXPECT_EQ(mistake_with("board: text_lines", "board: [mbed_hid_14, text_lines]"), "");
-  EXPECT_EQ(mistake_with("board: text_lines", ""), "");  // the protocol's usual one
-  EXPECT_NE(mistake_with("board: text_lines", "board: teensy").find("or a list of such"),
+  EXPECT_EQ(mistake_with("board: text_lines", ""), "");  // the usual board of the protocol
+  EXPECT_NE(mistake_with("board: text_lines", "board: teensy").find("or a list of them"),
             std::string::npos);
   EXPECT_NE(mistake_with("board: text_lines", "board: [text_lines, teensy]").find("or a list"),
             std::string::npos);
   EXPECT_NE(mistake_with("board: text_lines", "board: []").find("or a list"), std::string::npos);
   EXPECT_NE(mistake_with("board: text_lines", "board: mbed_hid_8")
-                .find("the board mbed_hid_8 does not speak hfab_14_byte"),
+                .find("the board mbed_hid_8 does not use the protocol hfab_14_byte"),
             std::string::npos);
 }
 
-TEST(ArmFile, SaysWhatTheMotorsCarryForLongOrNothingOfIt) {
+TEST(ArmFile, ReadsThermalLimitsOfTheMotorsOrNone) {
   const auto read = scene::load_arm(kArm);
   ASSERT_TRUE(read.ok()) << read.error().message;
   ASSERT_TRUE(read->heat.named());
-  // 1.4 N at the home pose's tip through link and capstan, the data sheet's continuous force.
+  // The continuous force of the data sheet is 1.4 N at the tip in the home pose, through link and
+  // capstan.
   const double arms[] = {0.138, 0.138, 0.112};  // m
   for (std::size_t i = 0; i < 3; ++i) {
     const driver::MotorDrive& drive = read->model.drives[i];
@@ -148,9 +149,9 @@ TEST(ArmFile, SaysWhatTheMotorsCarryForLongOrNothingOfIt) {
     EXPECT_LT(read->heat.continuous_current[i], drive.current_max);
     EXPECT_EQ(read->heat.time_constant[i], 60);
   }
-  EXPECT_NE(mistake_with("  continuous_current: [0.91, 1.07, 0.87]", "")
-                .find("expected continuous_current beside it"),
-            std::string::npos);
+  EXPECT_NE(
+      mistake_with("  continuous_current: [0.91, 1.07, 0.87]", "").find("needs continuous_current"),
+      std::string::npos);
   EXPECT_NE(mistake_with("continuous_current: [0.91", "continuous_current: [-0.91")
                 .find("continuous_current"),
             std::string::npos);
@@ -165,15 +166,15 @@ TEST(ArmFile, SaysWhatTheMotorsCarryForLongOrNothingOfIt) {
   EXPECT_FALSE(falcon->heat.named());
 }
 
-TEST(ArmFile, SaysHowLongAForceIsHeldUnchangedAndHowHeavyTheTipIs) {
+TEST(ArmFile, ReadsHoldTimeAndTipMass) {
   scene::ArmFile arm = *scene::load_arm(kArm);
-  EXPECT_EQ(scene::motion_settings(arm, 1000).hold_most, 10);
+  EXPECT_EQ(scene::motion_settings(arm, 1000).max_hold, 10);
   EXPECT_EQ(scene::motion_settings(arm, 1000).mass, 0.075);
   EXPECT_EQ(scene::motion_settings(arm, 1000).delay_ticks, 1);
   EXPECT_EQ(scene::motion_settings(arm, 4000).delay_ticks, 4);
   arm.hold_unchanged = 2.5;
   arm.energy.mass = 0.06;
-  EXPECT_EQ(scene::motion_settings(arm, 1000).hold_most, 2.5);
+  EXPECT_EQ(scene::motion_settings(arm, 1000).max_hold, 2.5);
   EXPECT_EQ(scene::motion_settings(arm, 1000).mass, 0.06);
   EXPECT_NE(
       mistake_with("  stall: 0.02 ", "  hold_unchanged: 0\n  stall: 0.02 ").find("hold_unchanged"),
@@ -208,20 +209,20 @@ TEST(ArmFile, DescribesTheGimbalThatIsMounted) {
                 .find("axes: expected three axes"),
             std::string::npos);
   EXPECT_NE(mistake("gimbal:\n  axes: [x, x, y]\n  counts_per_turn: [9, 9, 9]\n  sign: [1, 1, 1]\n")
-                .find("no two neighbours to be the same"),
+                .find("expected different axes for neighbours"),
             std::string::npos);
   EXPECT_NE(mistake("gimbal:\n  counts_per_turn: [9, 9, 9]\n  sign: [1, 0, 1]\n")
                 .find("sign: expected each to be 1 or -1"),
             std::string::npos);
   EXPECT_NE(mistake("gimbal:\n  sign: [1, 1, 1]\n").find("counts_per_turn"), std::string::npos);
-  // 8-byte reports have no room for it, and a simulated hand turns only what is there.
+  // 8-byte reports have no room for a gimbal, and a simulated hand can only rotate an existing one.
   EXPECT_NE(mistake_with("protocol: hfab_14_byte", "protocol: woody_8_byte\n" + good)
-                .find("carry no encoders of a gimbal"),
+                .find("contain no gimbal encoders"),
             std::string::npos);
   EXPECT_NE(
       mistake_with("  encoders: quantised",
                    "  gimbal: {amplitude_degrees: [1, 1, 1], period: 2}\n  encoders: quantised")
-          .find("expected a section 'gimbal' of the arm"),
+          .find("needs a section 'gimbal' of the arm"),
       std::string::npos);
 }
 
@@ -237,33 +238,33 @@ TEST(ArmFile, RefusesALengthInMillimetres) {
             std::string::npos);
 }
 
-TEST(ArmFile, RefusesAWorkspaceTurnedInsideOut) {
+TEST(ArmFile, RejectsAWorkspaceWithMinAboveMax) {
   EXPECT_NE(mistake_with("max: [0.1, 0.1, 0.1]", "max: [0.1, -0.2, 0.1]").find("max: expected"),
             std::string::npos);
 }
 
-TEST(ArmFile, RefusesLimitsThatProtectNobodyWithTheirLine) {
+TEST(ArmFile, RejectsUnsafeLimitsWithTheirLine) {
   struct Case {
     const char *piece, *by, *mistake;
   };
   const Case cases[] = {
       {"force_max: 5 ", "force_max: 100 ",
-       ":46: force_max: expected at most what the arm declares, 5 N, found 100"},
+       ":46: force_max: expected at most the declared force of the arm, 5 N, found 100"},
       {"force_max: 5 ", "force_max: 5.01 ",
-       ":46: force_max: expected at most what the arm declares"},
+       ":46: force_max: expected at most the declared force of the arm"},
       {"soft_start: 0.3", "soft_start: 0", ":49: soft_start: expected a number from 0.05 to 10 s"},
       {"soft_start: 0.3", "soft_start: 1e-9", ":49: soft_start: expected a number from 0.05"},
       {"soft_start: 0.3", "soft_start: 0.049", ":49: soft_start: expected a number from 0.05"},
       {"watchdog: 0.1 ", "watchdog: 10 ", ":51: watchdog: expected a number from 0.001 to 1 s"},
       {"rise_max: 2000", "rise_max: 1e6", ":48: rise_max: expected a number from 1 to 100000 N/s"},
-      {"stall: 0.02 ", "stall: 0.1 ", ":50: stall: expected a shorter time than that of watchdog"},
+      {"stall: 0.02 ", "stall: 0.1 ", ":50: stall: expected a shorter time than watchdog"},
       {"force_max: 5 ", "force_max: .nan ", ":46: force_max: expected a number"},
   };
   for (const Case& wrong : cases) {
     EXPECT_NE(mistake_with(wrong.piece, wrong.by).find(wrong.mistake), std::string::npos)
         << wrong.by << " gave: " << mistake_with(wrong.piece, wrong.by);
   }
-  // The bounds themselves are good.
+  // The bounds themselves are valid.
   EXPECT_EQ(mistake_with("soft_start: 0.3", "soft_start: 0.05"), "");
   EXPECT_EQ(mistake_with("watchdog: 0.1 ", "watchdog: 1 "), "");
   EXPECT_EQ(mistake_with("rise_max: 2000", "rise_max: 1e5"), "");

@@ -9,7 +9,7 @@
 namespace thimble::scene {
 namespace {
 
-TEST(ArmLines, EndAtTheTipWithBarsOfTheirLengthInEveryPose) {
+TEST(ArmLines, EndAtTheTipWithConstantLengthsInEveryPose) {
   for (const char* name : {"vintage_phantom", "woodenhaptics", "polhem", "falcon"}) {
     SCOPED_TRACE(name);
     const auto arm = scene::load_arm(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms" /
@@ -38,7 +38,7 @@ TEST(ArmLines, EndAtTheTipWithBarsOfTheirLengthInEveryPose) {
         }
       }
       if (lengths.empty()) lengths = now;
-      // Bars are stiff. A leg of the Falcon ends on short links that are not drawn (delta_arm.h).
+      // Bars are rigid. A leg of the Falcon ends at short links that are not drawn (delta_arm.h).
       const double slack = arm->is<driver::DeltaArm>() ? 0.03 : 1e-9;
       ASSERT_EQ(now.size(), lengths.size());
       for (std::size_t line = 0; line < now.size(); ++line) {

@@ -31,7 +31,7 @@ using Eigen::Vector3d;
 
 constexpr double kRadius = 0.03;  // m
 
-// An octahedron's faces, split `splits` times and moved onto the sphere.
+// Returns the faces of an octahedron, split `splits` times and projected onto the sphere.
 render::TriangleMesh sphere(int splits) {
   render::TriangleMesh mesh;
   mesh.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -81,7 +81,7 @@ driver::Result<scene::HandRoute> plan_on_sphere(const std::vector<scene::HandWay
   return scene::plan_hand(waypoints, {{"sphere", &mesh_W}});
 }
 
-TEST(SurfaceProbe, FindsTheSamePointAsALookAtEveryTriangle) {
+TEST(SurfaceProbe, FindsTheSamePointAsBruteForce) {
   const render::TriangleMesh mesh = sphere(3);
   scene::SurfaceProbe probe(mesh);
   std::mt19937_64 random(support::seed_of(3));
@@ -100,13 +100,13 @@ TEST(SurfaceProbe, FindsTheSamePointAsALookAtEveryTriangle) {
   }
 }
 
-TEST(SphereTree, GivesTheAnswersOfALookAtAllSpheres) {
+TEST(SphereTree, MatchesBruteForce) {
   std::mt19937_64 random(support::seed_of(5));
   std::uniform_real_distribution<double> place(-0.1, 0.1), size(0, 0.01);
   for (const int count : {0, 1, 8, 9, 100, 1000}) {
     std::vector<scene::SphereTree::Sphere> spheres(static_cast<std::size_t>(count));
     for (auto& sphere : spheres) {
-      // In rows, so that many are as far as others along one axis.
+      // Arranged in rows, so that many spheres are equally far along one axis.
       sphere.center = {place(random), std::round(50 * place(random)) / 50, 0};
       sphere.radius = size(random);
     }
@@ -129,7 +129,7 @@ TEST(SphereTree, GivesTheAnswersOfALookAtAllSpheres) {
   }
 }
 
-TEST(HandRoute, LiesPressBelowTheSphereAllAlongTheStroke) {
+TEST(HandRoute, StaysAtPressDepthBelowTheSphere) {
   const render::TriangleMesh mesh = sphere(5);
   const double press = 0.004;
   const auto route = plan_on_sphere({on(0, {0.04, 0, 0}, press), on(1, {0.02, 0.03, 0.01}, press),
@@ -138,12 +138,12 @@ TEST(HandRoute, LiesPressBelowTheSphereAllAlongTheStroke) {
   ASSERT_TRUE(route.ok()) << route.error().message;
   EXPECT_GE(route->size(), 1000U);
   for (const auto& [time, p_W] : *route) {
-    // Facets lie up to 18 um inside the sphere, and the averaging cuts corners by as much.
+    // Facets are up to 18 um inside the sphere, and averaging cuts corners by the same amount.
     EXPECT_NEAR(p_W.norm(), kRadius - press, 40e-6) << time;
   }
 }
 
-TEST(HandRoute, ChangesThePressSmoothlyFromStationToStation) {
+TEST(HandRoute, ChangesThePressSmoothlyBetweenWaypoints) {
   const auto route =
       plan_on_sphere({on(0, {0.04, 0, 0}, 0.001), on(1, {0.02, 0.03, 0}, 0.005)}, sphere(5));
   ASSERT_TRUE(route.ok());
@@ -155,7 +155,7 @@ TEST(HandRoute, ChangesThePressSmoothlyFromStationToStation) {
   EXPECT_NEAR(last, kRadius - 0.005, 20e-6);
 }
 
-TEST(HandRoute, GrowsInTimeAndMovesAsFastAsAHandOnly) {
+TEST(HandRoute, HasIncreasingTimesAndHandSpeeds) {
   const auto route =
       plan_on_sphere({at(0, {0.08, 0, 0}), on(0.8, {0.04, 0, 0}, 0.003),
                       on(1.6, {0.02, 0.03, 0.01}, 0.004), at(2.2, {0.03, 0.07, 0.03})},
@@ -172,7 +172,7 @@ TEST(HandRoute, GrowsInTimeAndMovesAsFastAsAHandOnly) {
     EXPECT_LT((velocity - last_velocity).norm(), 0.02) << (*route)[i].first;
     last_velocity = velocity;
   }
-  EXPECT_LT(last_velocity.norm(), 0.001);  // it ends at rest
+  EXPECT_LT(last_velocity.norm(), 0.001);  // the route ends at rest
 }
 
 TEST(HandRoute, GoesStraightThroughFreePointsWithoutAStop) {
@@ -188,7 +188,8 @@ TEST(HandRoute, GoesStraightThroughFreePointsWithoutAStop) {
   }
 }
 
-// Expects that a route keeps to a surface: each point no farther from it than `reach`, and no jump.
+// Expects that a route stays on a surface: each point is within `reach` of it, and there is no
+// jump.
 void expect_on_surface(const scene::HandRoute& route, const render::TriangleMesh& mesh_W,
                        double reach, const std::string& what) {
   scene::SurfaceProbe probe(mesh_W);
@@ -201,7 +202,7 @@ void expect_on_surface(const scene::HandRoute& route, const render::TriangleMesh
   }
 }
 
-TEST(HandRoute, GoesRoundWhereTheStraightWayLeadsThroughTheMiddle) {
+TEST(HandRoute, AvoidsTheInteriorOfTheObject) {
   const render::TriangleMesh mesh = sphere(4);
   const double press = 0.003;
   const auto route =
@@ -209,7 +210,7 @@ TEST(HandRoute, GoesRoundWhereTheStraightWayLeadsThroughTheMiddle) {
   ASSERT_TRUE(route.ok()) << route.error().message;
   double length = 0;
   for (std::size_t i = 0; i < route->size(); ++i) {
-    EXPECT_NEAR((*route)[i].second.norm(), kRadius - press, 200e-6);  // facets lie 70 um inside
+    EXPECT_NEAR((*route)[i].second.norm(), kRadius - press, 200e-6);  // facets are 70 um inside
     if (i > 0) length += ((*route)[i].second - (*route)[i - 1].second).norm();
   }
   EXPECT_NEAR(length, M_PI * (kRadius - press), 0.02 * length);  // nearly a great circle
@@ -226,7 +227,7 @@ TEST(HandRoute, GoesOverTheEdgesOfACube) {
   }
 }
 
-TEST(HandRoute, LeavesTheSurfaceWhereItsPartsDoNotHangTogether) {
+TEST(HandRoute, LeavesTheSurfaceBetweenUnconnectedParts) {
   render::TriangleMesh two = support::box(Vector3d::Constant(0.01));
   const render::TriangleMesh other = two;
   for (const Vector3d& p : other.vertices) two.vertices.push_back(p + Vector3d(0.06, 0, 0));
@@ -239,19 +240,18 @@ TEST(HandRoute, LeavesTheSurfaceWhereItsPartsDoNotHangTogether) {
   for (std::size_t i = 1; i < route->size(); ++i) {
     EXPECT_LT(((*route)[i].second - (*route)[i - 1].second).norm(), 0.002);
   }
-  // From the outside into a cavity there is no way.
+  // There is no path from the outside into a cavity.
   render::TriangleMesh hollow = support::box(Vector3d::Constant(0.02));
   for (const Vector3d& p : other.vertices) hollow.vertices.push_back(p);
   for (const auto& [a, b, c] : other.triangles) hollow.triangles.push_back({a + 8, c + 8, b + 8});
   const auto none = plan_on_sphere({on(0, {0, 0, 0.02}, 0), on(1, {0, 0, 0.01}, 0)}, hollow);
   ASSERT_FALSE(none.ok());
-  EXPECT_NE(none.error().message.find("from t = 0 s to 1 s finds none over \"sphere\""),
+  EXPECT_NE(none.error().message.find("no path from t = 0 s to 1 s over \"sphere\""),
             std::string::npos)
       << none.error().message;
 }
 
-// Random strokes over plain and shipped meshes: most were refused where only straight ones were
-// gone.
+// Random strokes over plain and shipped meshes. Without detours most of them would be rejected.
 TEST(HandRoute, GoesEveryStrokeOverPlainAndShippedMeshes) {
   std::vector<std::pair<std::string, render::TriangleMesh>> meshes{
       {"cube", support::box(Vector3d::Constant(0.03))},
@@ -291,17 +291,18 @@ TEST(HandRoute, GoesEveryStrokeOverPlainAndShippedMeshes) {
         ADD_FAILURE() << name << ": " << route.error().message;
         continue;
       }
-      // A press goes in by 1 mm, and through what is thinner; 60 ms of a fast hand cut corners.
+      // A press is 1 mm deep, and passes through thinner parts. Averaging over 60 ms cuts corners
+      // of a fast hand.
       expect_on_surface(*route, mesh, 0.006, name);
     }
   }
   std::printf("%d of %d random strokes refused\n", refused, strokes);
 }
 
-TEST(HandRoute, RefusesTimesThatDoNotGrow) {
+TEST(HandRoute, RejectsTimesThatDoNotIncrease) {
   const auto route = plan_on_sphere({at(1, {0, 0, 0}), at(1, {0.1, 0, 0})}, sphere(0));
   ASSERT_FALSE(route.ok());
-  EXPECT_NE(route.error().message.find("times must grow"), std::string::npos);
+  EXPECT_NE(route.error().message.find("times must increase"), std::string::npos);
   EXPECT_FALSE(plan_on_sphere({}, sphere(0)).ok());
 }
 
@@ -317,7 +318,7 @@ TEST(HandRoute, GoesStraightFromOneObjectToAnotherAndFollowsEach) {
   EXPECT_NEAR(route->front().second.z(), kRadius, 1e-3);
   EXPECT_NEAR(route->back().second.x(), 0.2, 1e-3);
   for (const auto& [time, p_W] : *route) EXPECT_NEAR(p_W.z(), kRadius, 1e-3);
-  // And a station on nothing is told.
+  // A waypoint on an unknown object is reported.
   there.on = "moon";
   const auto lost = scene::plan_hand({there}, {{"sphere", &left}});
   ASSERT_FALSE(lost.ok());

@@ -41,7 +41,7 @@ YAML::Node kept(const std::vector<SceneChange>& changes) {
   return file ? YAML::LoadFile(file->string()) : YAML::Node();
 }
 
-TEST(KeptScene, IsTheTextAsItIsWhereNothingChanges) {
+TEST(KeptScene, EmptyEditKeepsText) {
   const auto file = keep({});
   ASSERT_TRUE(file);
   EXPECT_EQ(text_of(*file), kTwoBalls);
@@ -50,7 +50,7 @@ TEST(KeptScene, IsTheTextAsItIsWhereNothingChanges) {
   EXPECT_NE(keep({{"rate", "2000"}}).value(), *file);
 }
 
-TEST(KeptScene, ChangesWhatAPlaceNamesAndNothingElse) {
+TEST(KeptScene, ChangesOnlyTheNamedPlace) {
   const YAML::Node all = kept({{"ball.stiffness", "300"},
                                {"ball.effects.friction.coefficient", "0.25"},
                                {"objects.1.stiffness", "2"},
@@ -64,7 +64,7 @@ TEST(KeptScene, ChangesWhatAPlaceNamesAndNothingElse) {
   EXPECT_EQ(ball["effects"][1]["wavelength"].as<double>(), 0.003);
   EXPECT_EQ(ball["position"][2].as<double>(), 0.1);
   EXPECT_EQ(all["objects"][1]["stiffness"].as<int>(), 2);
-  // A key of the scene goes before an object of that name.
+  // A key of the scene takes precedence over an object of that name.
   EXPECT_EQ(all["rate"].as<int>(), 2000);
   EXPECT_EQ(all["name"].as<std::string>(), "two balls");
   EXPECT_EQ(all["objects"].size(), 2U);
@@ -76,7 +76,7 @@ TEST(KeptScene, ReplacesAWholeItemOfAList) {
   EXPECT_FALSE(all["objects"][0]["effects"][1]["wavelength"]);
 }
 
-TEST(KeptScene, AnswersAPlaceThatIsNotThereWithWhatIs) {
+TEST(KeptScene, UnknownPlaceListsTheKnownOnes) {
   const auto said = [](const std::string& place) {
     const auto file = keep({{place, "1"}});
     return file ? std::string() : file.error().message;
@@ -92,7 +92,7 @@ TEST(KeptScene, AnswersAPlaceThatIsNotThereWithWhatIs) {
   EXPECT_FALSE(keep({{"ball.stiffness", "[1, "}}));
 }
 
-TEST(KeptScene, NamesFilesBesideItByTheirWholePath) {
+TEST(KeptScene, MakesFileNamesAbsolute) {
   const fs::path folder = support::scratch_folder() / "kept_beside";
   fs::create_directories(folder);
   std::ofstream(folder / "ball.off") << "OFF\n";
@@ -103,7 +103,7 @@ TEST(KeptScene, NamesFilesBesideItByTheirWholePath) {
   EXPECT_EQ(all["objects"][1]["mesh"].as<std::string>(), "cgal:cow.off");
 }
 
-TEST(KeptScene, RefusesWhatIsNoSceneAndAFolderThatCannotBeWritten) {
+TEST(KeptScene, RejectsInvalidScenesAndReadOnlyFolders) {
   for (const char* text : {"", "- a\n- b\n", "a: [1, \n", "a: 1\n---\nb: 2\n"}) {
     EXPECT_FALSE(keep_scene(text, {}, "/nowhere", kInto)) << text;
   }
@@ -115,7 +115,7 @@ TEST(KeptScene, RefusesWhatIsNoSceneAndAFolderThatCannotBeWritten) {
   EXPECT_NE(nowhere.error().message.find("XDG_STATE_HOME"), std::string::npos);
 }
 
-TEST(CopiedScene, RunsWhereverItLiesIfItCameWithThimble) {
+TEST(CopiedScene, RunsAnywhereIfItCameWithThimble) {
   const fs::path copy = support::scratch_folder() / "copies" / "mine.yaml";
   fs::create_directories(copy.parent_path());
   for (const ShippedFile& shipped : shipped_scenes()) {

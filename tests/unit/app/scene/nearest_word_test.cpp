@@ -1,4 +1,4 @@
-// The known word that a mistyped one most likely means.
+// The known word that a mistyped word most likely means.
 #include "text/nearest_word.h"
 
 #include <gtest/gtest.h>
@@ -11,12 +11,12 @@ namespace {
 
 const std::vector<std::string> kKnown{"run", "replay", "study", "friction", "bench"};
 
-TEST(NearestWord, IsFoundForEachKindOfSlip) {
+TEST(NearestWord, FindsEachKindOfTypo) {
   EXPECT_EQ(nearest_word("rum", kKnown), "run");            // another letter
   EXPECT_EQ(nearest_word("friktion", kKnown), "friction");  // in a longer word
-  EXPECT_EQ(nearest_word("repay", kKnown), "replay");       // one is missing
-  EXPECT_EQ(nearest_word("sstudy", kKnown), "study");       // one is too many
-  EXPECT_EQ(nearest_word("urn", kKnown), "run");            // two swapped
+  EXPECT_EQ(nearest_word("repay", kKnown), "replay");       // a letter is missing
+  EXPECT_EQ(nearest_word("sstudy", kKnown), "study");       // a letter is too many
+  EXPECT_EQ(nearest_word("urn", kKnown), "run");            // two letters are swapped
 }
 
 TEST(NearestWord, CapitalLettersAreNoMistake) {
@@ -24,7 +24,7 @@ TEST(NearestWord, CapitalLettersAreNoMistake) {
   EXPECT_EQ(nearest_word("Stiffness", {"damping", "stiffness"}), "stiffness");
 }
 
-TEST(NearestWord, IsNoneForWordsThatAreUnlike) {
+TEST(NearestWord, IgnoresDissimilarWords) {
   EXPECT_FALSE(nearest_word("elephant", kKnown));
   EXPECT_FALSE(nearest_word("", kKnown));
   EXPECT_FALSE(nearest_word("xy", {"ab"}));

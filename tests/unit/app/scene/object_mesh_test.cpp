@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A cube of 1 without its upper side; without more of them, a sheet.
+// A cube of side 1 without its upper face; without more faces, a sheet.
 std::filesystem::path write_cube(const std::string& name, int faces) {
   const std::filesystem::path file = support::scratch_folder() / name;
   std::ofstream out(file);
@@ -34,7 +34,7 @@ scene::SceneObject object_of(const std::filesystem::path& file) {
   return object;
 }
 
-TEST(ObjectMesh, StaysAsItIsUnlessARepairIsAskedFor) {
+TEST(ObjectMesh, IsUnchangedWithoutRepair) {
   scene::SceneObject object = object_of(write_cube("no_lid.off", 5));
   const auto open = scene::load_object_mesh(object);
   ASSERT_TRUE(open.ok()) << open.error().message;
@@ -51,9 +51,9 @@ TEST(ObjectMesh, StaysAsItIsUnlessARepairIsAskedFor) {
       << repaired->notes[0];
 }
 
-TEST(ObjectMesh, MakesSheetsAsThickInTheWorldAsAskedFor) {
+TEST(ObjectMesh, ThickensSheetsToTheirThicknessInTheWorld) {
   scene::SceneObject object = object_of(write_cube("two_sides.off", 2));
-  object.repair = true;  // mends nothing of it
+  object.repair = true;  // has no effect on this mesh
   object.sheet_thickness = 0.001;
   const auto sheet = scene::load_object_mesh(object);
   ASSERT_TRUE(sheet.ok()) << sheet.error().message;
@@ -63,7 +63,7 @@ TEST(ObjectMesh, MakesSheetsAsThickInTheWorldAsAskedFor) {
   EXPECT_NE(sheet->notes.back().find("not closed and treated as a sheet"), std::string::npos);
 }
 
-TEST(ObjectMesh, HasTheUnitOfItsFileUnlessTheSceneSaysAnother) {
+TEST(ObjectMesh, UsesTheUnitOfItsFileUnlessTheSceneSetsOne) {
   scene::SceneObject object;
   object.mesh_file = std::filesystem::path(THIMBLE_SOURCE_DIR) / "tests/data/meshes/box.3mf";
   EXPECT_DOUBLE_EQ(scene::load_object_mesh(object)->place.scale, 0.0254);
@@ -74,8 +74,8 @@ TEST(ObjectMesh, HasTheUnitOfItsFileUnlessTheSceneSaysAnother) {
   EXPECT_DOUBLE_EQ(scene::load_object_mesh(object)->place.scale, 0.1);
 }
 
-// A hand presses 20 mm deep on the middle of a sheet of 1 mm, from above and from below.
-TEST(ObjectMesh, LetsASheetBeTouchedFromBothSides) {
+// A hand presses 20 mm deep into the middle of a sheet of 1 mm, from above and from below.
+TEST(ObjectMesh, SheetHoldsTheTipFromBothSides) {
   scene::Scene scene;
   scene.rate = 1000;
   scene.objects.push_back(object_of(write_cube("one_side.off", 1)));
@@ -105,7 +105,7 @@ TEST(ObjectMesh, LetsASheetBeTouchedFromBothSides) {
   }
 }
 
-TEST(ObjectMesh, TellsWhatWouldMakeAnOpenMeshTouchable) {
+TEST(ObjectMesh, OpenMeshErrorNamesTheRemedy) {
   scene::Scene scene;
   scene.rate = 1000;
   scene.objects.push_back(object_of(write_cube("no_corner.off", 3)));
@@ -124,14 +124,14 @@ TEST(ObjectMesh, TellsWhatWouldMakeAnOpenMeshTouchable) {
   EXPECT_TRUE(scene::SceneObjects::build(scene).ok());
 }
 
-TEST(ObjectMesh, TellsWhenNothingIsLeft) {
+TEST(ObjectMesh, IsAnErrorIfNoTriangleIsLeft) {
   const std::filesystem::path file = support::scratch_folder() / "line.off";
   std::ofstream(file) << "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n";
   scene::SceneObject object = object_of(file);
   object.sheet_thickness = 0.001;
   const auto mesh = scene::load_object_mesh(object);
   ASSERT_FALSE(mesh.ok());
-  EXPECT_NE(mesh.error().message.find("no triangle of it has an area"), std::string::npos);
+  EXPECT_NE(mesh.error().message.find("no triangle has an area"), std::string::npos);
 }
 
 }  // namespace

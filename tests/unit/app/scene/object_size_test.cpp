@@ -33,10 +33,10 @@ TEST(ObjectSize, RefusesAPartInMillimetresWithoutScale) {
   EXPECT_EQ(objects.error().message,
             (kSmallMeshes / "mm50.stl").string() +
                 ": 50 m large, 250 times the reach of the arm (0.2 m); STL names no unit: set "
-                "scale: 0.001 if it counts in mm, or size (m).");
+                "scale: 0.001 if its unit is mm, or size (m).");
 }
 
-TEST(ObjectSize, TakesThatPartWithAScaleOrASize) {
+TEST(ObjectSize, AcceptsAPartInMillimetresWithScaleOrSize) {
   Scene scene = scene_of("mm50.stl");
   scene.objects[0].scale = 0.001;
   EXPECT_TRUE(SceneObjects::build(scene).ok());
@@ -45,7 +45,7 @@ TEST(ObjectSize, TakesThatPartWithAScaleOrASize) {
   EXPECT_TRUE(SceneObjects::build(scene).ok());
 }
 
-TEST(ObjectSize, RefusesFarTooLargeMeshesWhateverIsStated) {
+TEST(ObjectSize, RejectsHugeMeshesWithAnyUnit) {
   Scene scene = scene_of("mm50.stl");
   scene.objects[0].scale = 1;
   const auto objects = SceneObjects::build(scene);
@@ -65,7 +65,7 @@ TEST(ObjectSize, ReportsALargeMeshWithoutAUnit) {
       << (*objects)->notes()[0];
 }
 
-TEST(ObjectSize, SaysNothingWhereTheSizeIsStated) {
+TEST(ObjectSize, IsSilentIfTheSizeIsSet) {
   SceneObject stated;
   stated.size = 10;
   EXPECT_EQ(*judge_size(stated, {.side = 10, .kind = "STL", .has_unit = false}, 0.2), "");
@@ -74,7 +74,7 @@ TEST(ObjectSize, SaysNothingWhereTheSizeIsStated) {
   EXPECT_EQ(*judge_size(plain, {.side = 10, .kind = "STL", .has_unit = false}, 0), "");
 }
 
-TEST(ObjectSize, TakesTheLargestOfSeveralArms) {
+TEST(ObjectSize, UsesTheLargestOfSeveralArms) {
   Scene scene = scene_of("box.off");
   EXPECT_DOUBLE_EQ(reach_of(scene), 0.2);
   scene.arms.emplace_back();

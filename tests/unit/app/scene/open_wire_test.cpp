@@ -1,5 +1,5 @@
-// What a program sends to a board before the board has shown that it is an arm: nothing. The whole
-// way, from the kernel's folders over the choice to the wire, on scripted libraries and a
+// A program sends nothing to a board that has not proved to be an arm. Tests the whole path: the
+// folders of the kernel, the choice of the arm, and its connection, with scripted libraries and a
 // pseudo-terminal.
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ scene::ArmFile file_of(const std::string& name) {
 const char* const kFiles[] = {"woodenhaptics", "woodenhaptics_teensy", "polhem", "vintage_phantom",
                               "falcon"};
 
-/// One board plugged into a machine of its own.
+/// One board, plugged into a simulated machine.
 class OpenWireTest : public ::testing::Test {
  protected:
   OpenWireTest()
@@ -42,7 +42,7 @@ class OpenWireTest : public ::testing::Test {
     hid_.report_bytes = bytes;
   }
 
-  /// Lists the board, with its node where it lies on this machine.
+  /// Lists the board, with the path of its node on this machine.
   std::vector<driver::FoundArm> plugged_in() {
     auto arms = driver::find_arms(usb_.root());
     EXPECT_TRUE(arms);
@@ -54,7 +54,7 @@ class OpenWireTest : public ::testing::Test {
     return *arms;
   }
 
-  /// Opens the board with an arm file; the error's sentence, or "" if it went well.
+  /// Opens the board with an arm file. Returns the error message, or "" on success.
   std::string open(const std::string& file, const std::string& device = "B1") {
     const auto chosen = scene::choose_arm(plugged_in(), device);
     if (!chosen) return chosen.error().message;
@@ -77,7 +77,7 @@ TEST_F(OpenWireTest, RawHidTeensyNeedsDeviceAndBoardName) {
   }
   EXPECT_EQ(hid_.open, 0);
   EXPECT_EQ(open("polhem"), "");
-  EXPECT_EQ(hid_.messages, 0u);  // the first is the zero force of Device::open
+  EXPECT_EQ(hid_.messages, 0u);  // the first message is the zero force of Device::open
 }
 
 TEST_F(OpenWireTest, SendsNothingToAForeignMbedBoard) {
@@ -108,7 +108,7 @@ TEST_F(OpenWireTest, SendsNothingToAnUnnamed14ByteBoard) {
   EXPECT_EQ(hid_.messages, 0u);
 }
 
-TEST_F(OpenWireTest, NeverOpensABoardOfAFormThatNoArmHas) {
+TEST_F(OpenWireTest, NeverOpensABoardWithUnknownReports) {
   plug_hid("1234", "0006", "Polhem", 64);
   EXPECT_EQ(open("polhem", "auto"), "none chosen");
   for (const char* file : kFiles) {
@@ -118,7 +118,7 @@ TEST_F(OpenWireTest, NeverOpensABoardOfAFormThatNoArmHas) {
   EXPECT_EQ(hid_.messages, 0u);
 }
 
-/// A serial board at the far end of a pseudo-terminal.
+/// Serial board at the other end of a pseudo-terminal.
 class OpenSerialTest : public OpenWireTest {
  protected:
   OpenSerialTest() : far_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
@@ -159,9 +159,9 @@ TEST_F(OpenSerialTest, NeverOpensAnotherMakersArm) {
   EXPECT_EQ(hear(), "");
 }
 
-TEST_F(OpenSerialTest, AsksANamedBoardWhoItIsWithZeroCurrentsAlone) {
+TEST_F(OpenSerialTest, RequestsTheModelWithZeroCurrentsOnly) {
   plug_serial("USB Serial");
-  // A board that answers as a Polhem, where a WoodenHaptics is wanted: it has its answer ready.
+  // The board answers as a Polhem, but a WoodenHaptics is expected. Its answer is already waiting.
   const std::string answer = "[1,0,0,0,0,0,0,0]\n";
   std::string heard;
   std::atomic<bool> done{false};
@@ -176,7 +176,7 @@ TEST_F(OpenSerialTest, AsksANamedBoardWhoItIsWithZeroCurrentsAlone) {
   const std::string refused = open("woodenhaptics_teensy");
   done.store(true);
   board.join();
-  EXPECT_NE(refused.find("answers as model 1"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("reports model 1"), std::string::npos) << refused;
   ASSERT_FALSE(heard.empty());
   for (std::size_t at = 0; at < heard.size(); at += 8) {
     EXPECT_EQ(heard.substr(at, 8), "[0,0,0]\n");

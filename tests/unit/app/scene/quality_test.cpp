@@ -22,7 +22,7 @@ namespace {
 using render::BlendingChoice;
 using render::TrackerChoice;
 
-TEST(Quality, LeavesANormalSceneAloneAndSaysWhatItChoosesElse) {
+TEST(Quality, NormalChangesNothingAndOthersReportTheirChoices) {
   Scene scene;
   scene.objects.resize(2);
   scene.objects[0].name = "round";
@@ -42,7 +42,7 @@ TEST(Quality, LeavesANormalSceneAloneAndSaysWhatItChoosesElse) {
   EXPECT_GE(scene.objects[1].body.dent->substeps, 8);
   EXPECT_FALSE(quality_named("best"));
 
-  // What the scene names itself stays.
+  // Settings that the scene names do not change.
   Scene named;
   named.objects.resize(2);
   named.objects[0].contact.blending = BlendingChoice::kFixedBand;
@@ -54,7 +54,7 @@ TEST(Quality, LeavesANormalSceneAloneAndSaysWhatItChoosesElse) {
   EXPECT_EQ(named.objects[1].contact.tracker, TrackerChoice::kOffset);
 }
 
-// Everything that a quality may turn, in words.
+// Returns all settings that a quality may change, as text.
 std::string resolved(const Scene& scene) {
   std::string text = fmt::format("{} Hz", scene.rate);
   for (const SceneObject& object : scene.objects) {
@@ -98,7 +98,7 @@ TEST(Quality, DraftAndReferenceChangeSomethingInEveryShippedScene) {
     EXPECT_NE(resolved(draft), resolved(normal)) << entry.path();
     EXPECT_NE(resolved(reference), resolved(normal)) << entry.path();
     EXPECT_LE(draft.rate, normal.rate) << entry.path();
-    // The step of what moves is that of the loop, whatever the rate.
+    // The step of moving bodies is the period of the loop at any rate.
     for (const Scene* scene : {&draft, &reference}) {
       for (const SceneObject& object : scene->objects) {
         if (object.body.dent) {
@@ -140,25 +140,25 @@ std::filesystem::path ring_scene(int across, double stiffness, const std::string
 }
 
 TEST(Quality, DraftKeepsTheRateOfStiffSurfaces) {
-  // 4 N s/m of hand and surface over 2 ms hold 2,000 N/m, of which half is borne.
+  // 4 N s/m of hand and surface over 2 ms are stable up to 2,000 N/m; half of that is allowed.
   const SceneReading slow{.rate_factor = 0.5};
   EXPECT_EQ(load_scene(ring_scene(8, 700), slow)->rate, 500);
   EXPECT_EQ(load_scene(ring_scene(8, 1500), slow)->rate, 1000);
   EXPECT_EQ(load_scene(ring_scene(8, 1500), slow)->rate_factor, 1);
-  // What is wrong in the file is told as ever.
+  // Mistakes in the file are reported as usual.
   EXPECT_FALSE(load_scene(ring_scene(8, 700, ", colour: red"), slow).ok());
 }
 
-TEST(Quality, AutoTakesTheCheapestImperceptiblePoint) {
+TEST(Quality, AutoChoosesTheCheapestImperceptiblePoint) {
   const QualityTable& table = quality_table();
   for (const int across : {24, 48}) {
     auto scene = load_scene(ring_scene(across, 800));
     ASSERT_TRUE(scene.ok()) << scene.error().message;
     const auto said = apply_quality(Quality::kAuto, *scene);
     ASSERT_EQ(said.size(), 2U);
-    EXPECT_NE(said[0].find("ns per tick, wrong by"), std::string::npos) << said[0];
+    EXPECT_NE(said[0].find("ns per tick, error"), std::string::npos) << said[0];
     EXPECT_NE(said[1].find(std::string(table.measured)), std::string::npos) << said[1];
-    // On a ring of the table itself the choice can be looked up.
+    // For a ring of the table the expected choice is a row of the table.
     const ContactPoint* best = nullptr;
     const double turn = typical_turn(
         render::ContactMesh::build(studies::kCostRing.mesh(2 * across, across)).value());
@@ -174,15 +174,15 @@ TEST(Quality, AutoTakesTheCheapestImperceptiblePoint) {
   }
 }
 
-TEST(Quality, AutoKeepsToABudgetAndSaysSoWhereNothingFits) {
+TEST(Quality, AutoKeepsTheBudgetOrReportsThatNothingFits) {
   const auto chosen = [](double budget) {
     auto scene = load_scene(ring_scene(32, 800)).value();
     return std::pair(apply_quality(Quality::kAuto, scene, budget), scene.objects[0].contact);
   };
-  EXPECT_NE(chosen(1).first.back().find("Nothing fits in 1 ns"), std::string::npos);
+  EXPECT_NE(chosen(1).first.back().find("Nothing fits into 1 ns"), std::string::npos);
   EXPECT_EQ(chosen(1).second.tracker, TrackerChoice::kEdgePlanes);
   EXPECT_EQ(chosen(1).second.blending, BlendingChoice::kFlat);
-  EXPECT_EQ(chosen(40).second.blending, BlendingChoice::kFlat);  // what compact takes is more
+  EXPECT_EQ(chosen(40).second.blending, BlendingChoice::kFlat);  // compact takes more
   EXPECT_NE(chosen(40).first.back().find("of the 40 ns"), std::string::npos);
   EXPECT_EQ(chosen(1000).second.tracker, TrackerChoice::kPacked);
 }
@@ -200,7 +200,7 @@ TEST(Quality, AutoLimitsTheStepOfADent) {
   EXPECT_EQ(named.objects[0].contact.tracker, TrackerChoice::kOffset);
 }
 
-TEST(Quality, TheStoredPointsErrAsTheStudyFindsThem) {
+TEST(Quality, StoredErrorsMatchTheStudy) {
   const studies::AccuracyAxis axis = studies::contact_points_axis();
   const auto stored = quality_table().contacts;
   std::size_t next = 0;
@@ -209,7 +209,7 @@ TEST(Quality, TheStoredPointsErrAsTheStudyFindsThem) {
       ASSERT_LT(next, stored.size());
       const ContactPoint& one = stored[next++];
       EXPECT_NEAR(one.turn / point.knob, 1, 1e-4) << line.name << ' ' << point.name;
-      // What is found anew may differ in the last bits only; the table has five digits.
+      // A new measurement may differ only in the last bits; the table has five digits.
       EXPECT_NEAR(one.error / point.error(), 1, 1e-3) << line.name << ' ' << point.name;
       EXPECT_GT(one.ns, 0);
     }

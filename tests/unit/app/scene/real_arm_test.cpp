@@ -70,7 +70,8 @@ TEST(RealArm, IsChosenByNameOrAsTheOnlyOne) {
   EXPECT_NE(two.error().message.find("W1 (arm), F1 (arm)"), std::string::npos);
   EXPECT_EQ((*scene::choose_arm({arms[0], arms[1]}, "auto"))->serial, "W1");
   EXPECT_FALSE(scene::choose_arm({}, "auto")->has_value());
-  EXPECT_NE(scene::choose_arm({}, "W1").error().message.find("None is plugged in"),
+  EXPECT_NE(scene::choose_arm({}, "W1").error().message.find(
+                "No arm that Thimble can drive is plugged in"),
             std::string::npos);
   EXPECT_NE(scene::choose_arm(arms, "T1").error().message.find("not public"), std::string::npos);
 }
@@ -89,15 +90,15 @@ TEST(RealArm, SeveralArmsAreListedWithTheirKinds) {
       << chosen.error().message;
 }
 
-TEST(RealArm, OfUnknownKindIsTakenByItsNameAloneAndToldOf) {
+TEST(RealArm, OfUnknownKindIsUsedOnlyByNameAndReported) {
   const std::vector<driver::FoundArm> arms = {found(ArmKind::kPolhem, "P1"),
                                               found(ArmKind::kHfabLine, "L1")};
   EXPECT_FALSE(scene::choose_arm(arms, "auto")->has_value());
   EXPECT_EQ((*scene::choose_arm(arms, "L1"))->serial, "L1");
-  const std::string told = scene::boards_left_out(arms);
-  EXPECT_NE(told.find("P1: arm, L1: arm"), std::string::npos) << told;
+  const std::string listed = scene::boards_left_out(arms);
+  EXPECT_NE(listed.find("P1: arm, L1: arm"), std::string::npos) << listed;
   EXPECT_EQ(scene::boards_left_out({found(ArmKind::kFalcon, "F1")}), "");
-  // Beside an arm it is not what "auto" means.
+  // If an arm is plugged in too, "auto" does not select it.
   EXPECT_EQ((*scene::choose_arm({arms[0], arms[1], found(ArmKind::kFalcon, "F1")}, "auto"))->serial,
             "F1");
   driver::FoundArm closed = arms[1];
@@ -106,7 +107,7 @@ TEST(RealArm, OfUnknownKindIsTakenByItsNameAloneAndToldOf) {
             std::string::npos);
 }
 
-TEST(RealArm, OfAFormThatNoArmHasIsNeverChosen) {
+TEST(RealArm, WithUnknownReportsIsNeverChosen) {
   driver::FoundArm odd = found(ArmKind::kUnsupported, "O1");
   odd.certainty = Certainty::kUnknown;
   EXPECT_FALSE(scene::choose_arm({odd}, "auto")->has_value());
@@ -122,7 +123,7 @@ TEST(RealArm, MustBeAccessible) {
   EXPECT_NE(chosen.error().message.find("70-thimble.rules"), std::string::npos);
 }
 
-TEST(RealArm, IsFoundAgainBySerialNumberInAnySocketElseBySocket) {
+TEST(RealArm, IsFoundAgainBySerialNumberOrSocket) {
   const support::FakeUsb usb("find_again");
   usb.plug("1-1", "0403", "cb48", "F1", 1, 2);
   const auto before = driver::find_arms(usb.root())->front();
@@ -135,7 +136,7 @@ TEST(RealArm, IsFoundAgainBySerialNumberInAnySocketElseBySocket) {
   ASSERT_TRUE(again);
   EXPECT_EQ(again->usb.device, 8);
 
-  usb.plug("1-5", "0403", "cb48", "F1", 1, 9);  // a second of that name: which is it?
+  usb.plug("1-5", "0403", "cb48", "F1", 1, 9);  // a second one of that name is ambiguous
   EXPECT_FALSE(scene::find_again(*driver::find_arms(usb.root()), before));
 }
 
@@ -149,9 +150,9 @@ TEST(RealArm, UnnamedArmIsFoundOnlyInItsSocket) {
   const auto before = driver::find_arms(usb.root())->front();
   EXPECT_EQ(before.name(), "usb-1-1.4");
   usb.unplug("1-1.4");
-  plug("1-3", 8, 3);  // another socket: it may be another arm
+  plug("1-3", 8, 3);  // in another socket it may be another arm
   EXPECT_FALSE(scene::find_again(*driver::find_arms(usb.root()), before));
-  plug("1-1.4", 14, 4);  // the same socket, but other firmware
+  plug("1-1.4", 14, 4);  // same socket, but other firmware
   EXPECT_FALSE(scene::find_again(*driver::find_arms(usb.root()), before));
   usb.unplug("1-1.4");
   plug("1-1.4", 8, 5);
@@ -161,7 +162,7 @@ TEST(RealArm, UnnamedArmIsFoundOnlyInItsSocket) {
   EXPECT_EQ(again->name(), before.name());
 }
 
-TEST(RealArm, TakesOnlyItsOwnFile) {
+TEST(RealArm, AcceptsOnlyItsOwnFile) {
   const scene::ArmFile vintage = file_of("vintage_phantom.yaml");
   const scene::ArmFile woody = file_of("woodenhaptics.yaml");
   const scene::ArmFile falcon = file_of("falcon.yaml");
@@ -182,8 +183,8 @@ TEST(RealArm, TakesOnlyItsOwnFile) {
   EXPECT_FALSE(scene::check_fits(woody, found(ArmKind::kFalcon, "")));
 }
 
-// Counts of encoder a grow: both published clients of the mbed board put the tip on the other side
-// of it [S CHAI3D CWoodenDevice.cpp, haptikfabrikenapi]; on text lines it goes with them [S
+// The counts of encoder a increase. Both published clients of the mbed board move the tip against
+// them [S CHAI3D CWoodenDevice.cpp, haptikfabrikenapi]; with text lines the tip moves with them [S
 // hfabapi].
 TEST(RealArm, HasTheSignsOfItsBoard) {
   driver::ArmReading reading;
@@ -193,7 +194,7 @@ TEST(RealArm, HasTheSignsOfItsBoard) {
   EXPECT_LT(driver::make_arm(ArmKind::kWoody, mbed.model)->pose(reading).p_BT.y(), -0.01);
   EXPECT_GT(driver::make_arm(ArmKind::kHfabLine, teensy.model)->pose(reading).p_BT.y(), 0.01);
   for (const scene::ArmFile& file : {mbed, teensy}) EXPECT_EQ(file.model.drives[0].sign, 1);
-  // The files and the driver's own data are one.
+  // The arm files agree with the built-in data of the driver.
   const auto same = [](const scene::ArmFile& file, const auto& model) {
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_EQ(file.model.drives[i].sign, model.drives[i].sign);
@@ -218,13 +219,13 @@ TEST(RealArm, StandsInTheMiddleOfItsWorldAsItsFileSays) {
   }
   const Eigen::Vector3d p_WT = falcon.p_WB + falcon.R_WB * arm->pose(reading).p_BT;
   EXPECT_LT(p_WT.norm(), 1e-4);
-  // The arm's z, out towards the user, is the world's x; its y is up.
+  // The z axis of the arm, towards the user, is x of the world; its y axis points up.
   EXPECT_LT((falcon.R_WB * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitX()).norm(), 1e-9);
   EXPECT_LT((falcon.R_WB * Eigen::Vector3d::UnitY() - Eigen::Vector3d::UnitZ()).norm(), 1e-9);
   EXPECT_LT((falcon.R_WB * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-9);
 }
 
-TEST(RealArm, SpeaksTheWireOfItsKind) {
+TEST(RealArm, UsesTheProtocolOfItsKind) {
   std::array<std::byte, driver::kReportCapacity> bytes{};
   const scene::ArmFile woody = file_of("woodenhaptics.yaml");
   EXPECT_EQ(driver::make_arm(ArmKind::kWoody, woody.model)->encode({}, bytes), 8u);

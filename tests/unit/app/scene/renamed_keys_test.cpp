@@ -1,4 +1,4 @@
-// Files with keys that have got another name are read as before, and the user is told the new name.
+// Files with renamed keys are still read, with a warning that gives the new name.
 #include "yaml/renamed_keys.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace thimble::scene {
 namespace {
 
-/// Reads a map at the place of the sandpaper that may have a wavelength.
+/// Reads a map of a sandpaper effect with an optional wavelength.
 struct Reading {
   double wavelength = 0;
   std::string mistakes;
@@ -33,17 +33,17 @@ Reading read(const std::string& text, const std::string& place = "effects[] text
   return reading;
 }
 
-TEST(RenamedKeys, AreReadWithAWarningThatTellsLineAndNewName) {
+TEST(RenamedKeys, AreReadWithAWarning) {
   const Reading reading = read("\ngrain: 0.003\n");
   EXPECT_EQ(reading.mistakes, "");
   EXPECT_EQ(reading.wavelength, 0.003);
   ASSERT_EQ(reading.warnings.size(), 1U);
   EXPECT_EQ(reading.warnings[0],
-            "scene.yaml:2: grain: is called wavelength now; the old name still works, but write "
+            "scene.yaml:2: grain: is now called wavelength; the old name still works, but use "
             "the new one.");
 }
 
-TEST(RenamedKeys, AreNotWarnedOfByTheirNewName) {
+TEST(RenamedKeys, NewNamesGiveNoWarning) {
   const Reading reading = read("wavelength: 0.003\n");
   EXPECT_EQ(reading.mistakes, "");
   EXPECT_EQ(reading.wavelength, 0.003);
@@ -55,20 +55,20 @@ TEST(RenamedKeys, AreCheckedLikeTheNewOnes) {
             std::string::npos);
 }
 
-TEST(RenamedKeys, AreRefusedBesideTheNewOne) {
+TEST(RenamedKeys, AreRejectedNextToTheNewName) {
   EXPECT_EQ(read("wavelength: 0.003\ngrain: 0.004\n").mistakes,
-            "scene.yaml:2: grain: is the old name of wavelength, which stands here too; keep the "
+            "scene.yaml:2: grain: is the old name of wavelength, which is here too; keep the "
             "new one.");
 }
 
-TEST(RenamedKeys, AreKnownWhereTheyStoodAndNowhereElse) {
+TEST(RenamedKeys, AreKnownOnlyInTheirOwnMap) {
   const Reading reading = read("grain: 0.003\n", "effects[] texture: sines.waves[]");
-  EXPECT_NE(reading.mistakes.find("grain: is no key that is known here"), std::string::npos);
+  EXPECT_NE(reading.mistakes.find("grain: unknown key"), std::string::npos);
   EXPECT_TRUE(reading.warnings.empty());
 }
 
-// The table names places and keys as the readers do.
-TEST(RenamedKeys, LeadToKeysThatTheReadersAskFor) {
+// The table uses the same places and keys as the readers.
+TEST(RenamedKeys, LeadToExistingKeys) {
   auto keys = scene_keys().value();
   const auto arm = arm_keys();
   keys.insert(keys.end(), arm.begin(), arm.end());

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Folders of our own: nothing of this machine is looked at.
+/// Temporary folders, so that no file of this machine is used.
 class ScannedMeshes : public ::testing::Test {
  protected:
   ScannedMeshes()
@@ -31,7 +31,7 @@ class ScannedMeshes : public ::testing::Test {
     std::ofstream(root_ / file) << text;
   }
 
-  /// Packs a scan as Debian's package does.
+  /// Packs a scan in the same way as the Debian package.
   void pack(const std::string& name) const {
     write("packed/data/meshes/" + name, "OFF\n");
     const std::string command = "tar -czf '" + (root_ / "data.tar.gz").string() + "' -C '" +
@@ -43,7 +43,7 @@ class ScannedMeshes : public ::testing::Test {
   ScanPlaces places_;
 };
 
-TEST_F(ScannedMeshes, AreTakenFromTheFirstFolderThatHasThem) {
+TEST_F(ScannedMeshes, ComeFromTheFirstFolderThatHasThem) {
   write("second/cow.off", "OFF\n");
   EXPECT_EQ(find_scan("cow.off", places_).value(), root_ / "second/cow.off");
   write("first/cow.off", "OFF\n");
@@ -60,23 +60,23 @@ TEST_F(ScannedMeshes, AreUnpackedOnFirstUseAndOnceOnly) {
   EXPECT_FALSE(find_scan("horse.off", places_));
 }
 
-TEST_F(ScannedMeshes, OfAFolderAreNotUnpacked) {
+TEST_F(ScannedMeshes, InAFolderAreNotUnpacked) {
   pack("cow.off");
   write("first/cow.off", "OFF\n");
   ASSERT_TRUE(find_scan("cow.off", places_));
   EXPECT_FALSE(fs::exists(root_ / "cache"));
 }
 
-TEST_F(ScannedMeshes, OfADamagedArchiveLeaveNothingBehind) {
+TEST_F(ScannedMeshes, DamagedArchiveLeavesNothingBehind) {
   write("data.tar.gz", "no archive");
   const auto found = find_scan("cow.off", places_);
   ASSERT_FALSE(found);
-  EXPECT_NE(found.error().message.find("cannot be unpacked"), std::string::npos)
+  EXPECT_NE(found.error().message.find("Cannot unpack"), std::string::npos)
       << found.error().message;
   EXPECT_TRUE(fs::is_empty(root_ / "cache"));
 }
 
-TEST_F(ScannedMeshes, ThatAreNowhereAreToldWithThePlacesAndWhatToDo) {
+TEST_F(ScannedMeshes, MissingOnesAreReportedWithTheRemedy) {
   const std::string said = find_scan("cow.off", places_).error().message;
   for (const std::string& words :
        {std::string("cow.off"), (root_ / "first").string(), (root_ / "second").string(),
@@ -85,7 +85,7 @@ TEST_F(ScannedMeshes, ThatAreNowhereAreToldWithThePlacesAndWhatToDo) {
   }
 }
 
-TEST_F(ScannedMeshes, AreLookedForInTheFolderOfTheEnvironmentAlone) {
+TEST_F(ScannedMeshes, EnvironmentFolderReplacesAllOthers) {
   const char* before = std::getenv("THIMBLE_MESHES");
   const std::string kept = before != nullptr ? before : "";
   setenv("THIMBLE_MESHES", "/own/scans", 1);
@@ -103,7 +103,7 @@ TEST_F(ScannedMeshes, AreFoundByTheDoctorThatUnpacksNothing) {
   using bringup::examine_scans;
   const bringup::Finding none = bringup::examine_scans(places_);
   EXPECT_EQ(none.health, bringup::Health::kAdvice);
-  EXPECT_NE(none.mend.find("libcgal-demo"), std::string::npos);
+  EXPECT_NE(none.remedy.find("libcgal-demo"), std::string::npos);
   pack("elephant.off");
   const bringup::Finding packed = bringup::examine_scans(places_);
   EXPECT_EQ(packed.health, bringup::Health::kGood);

@@ -8,7 +8,7 @@
 #include "support/scratch.h"
 #include "thimble/scene/scene_file.h"
 
-// The list `arms` of a scene.
+// List `arms` of a scene.
 
 namespace thimble {
 namespace {
@@ -45,7 +45,7 @@ TEST(SceneArms, PlacesEachOfSeveralArms) {
   const scene::SceneArm& right = scene->arms[1];
   EXPECT_EQ(right.name, "right");
   EXPECT_EQ(right.hand.size(), 1U);
-  const Eigen::Vector3d p = scene->arms.front().arm.p_WB;  // where the arm stands alone
+  const Eigen::Vector3d p = scene->arms.front().arm.p_WB;  // place of the arm without `at`
   const Eigen::Vector3d placed(-p.y() + 0.01, p.x() + 0.2, p.z() + 0.03);
   EXPECT_LT((right.arm.p_WB - placed).norm(), 1e-15);
   Eigen::Matrix3d R;
@@ -56,7 +56,7 @@ TEST(SceneArms, PlacesEachOfSeveralArms) {
   EXPECT_EQ(read_several(arm_entry("a") + arm_entry("b"))->faults, scene::FaultRule::kTogether);
 }
 
-TEST(SceneArms, TellsWhatIsWrongWithSeveralArms) {
+TEST(SceneArms, ReportsMistakesInSeveralArms) {
   const auto says = [](const std::string& arms, const std::string& said,
                        const std::string& more = "") {
     const auto scene = read_several(arms, more);
@@ -66,8 +66,8 @@ TEST(SceneArms, TellsWhatIsWrongWithSeveralArms) {
   const std::string two = arm_entry("left") + arm_entry("right");
   says(arm_entry("left"), "arms: expected two arms or more");
   says(arm_entry("left") + arm_entry("left"), "expected different names, found \"left\" twice");
-  says(two, "hand: cannot stand beside arms", "hand: {path: [{t: 0, at: [0, 0, 0]}]}\n");
-  says(two, "arm: cannot stand beside arms", "arm: arm.yaml\n");
+  says(two, "hand: cannot be used with arms", "hand: {path: [{t: 0, at: [0, 0, 0]}]}\n");
+  says(two, "arm: cannot be used with arms", "arm: arm.yaml\n");
   says(arm_entry("left") + arm_entry("../x"), "name: expected letters, digits and _");
   says(two, "faults", "faults: never\n");
   says(arm_entry("left") + arm_entry("right", ", at: {turn_degrees: 45}"),

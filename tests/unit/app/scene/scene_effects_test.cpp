@@ -16,7 +16,7 @@ std::vector<std::string> names_of(const std::vector<render::EffectPlan>& plans) 
   return names;
 }
 
-// Reads a list of effects and tells what was wrong with it.
+// Reads a list of effects. Returns the mistakes.
 std::string mistake(const std::string& effects) {
   auto yaml = scene::YamlFile::parse("effects:\n" + effects, "scene");
   if (!yaml) return yaml.error().message;
@@ -49,26 +49,26 @@ TEST(SceneEffects, UnknownOrConflictingEffectsNameTheirLine) {
             std::string::npos);
   EXPECT_NE(mistake("  - {friction: bristle, texture: sandpaper}\n").find("entry of its own"),
             std::string::npos);
-  EXPECT_NE(mistake("  - {friction: bristle, coeficient: 0.4}\n")
-                .find("perhaps \"coefficient\" was meant"),
-            std::string::npos);
+  EXPECT_NE(
+      mistake("  - {friction: bristle, coeficient: 0.4}\n").find("did you mean \"coefficient\"?"),
+      std::string::npos);
   EXPECT_NE(mistake("  - {friction: bristle, coefficient: -1}\n").find("coefficient: expected"),
             std::string::npos);
   EXPECT_NE(mistake("  - {friction: bristle, coefficient: .nan}\n").find("coefficient: expected"),
             std::string::npos);
 }
 
-TEST(Surroundings, OfEveryArmThatComesAlongAreThoseOfADeskTopArm) {
+TEST(Surroundings, OfShippedArmsAreThoseOfDeskTopArms) {
   int arms = 0;
   for (const auto& file : std::filesystem::directory_iterator(
            std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms")) {
     const auto arm = scene::load_arm(file.path());
     ASSERT_TRUE(arm.ok()) << arm.error().message;
     const render::EffectContext context = scene::effect_context_of(*arm, 1000);
-    // Steps of the arms we know lie between 0.02 and 0.07 mm [DEVICES 2]; row sums above that.
+    // Encoder steps of known arms are between 0.02 and 0.07 mm [DEVICES 2]; row sums are larger.
     EXPECT_GT(context.encoder_step, 0.01e-3) << file.path();
     EXPECT_LT(context.encoder_step, 0.3e-3) << file.path();
-    // One place computes it, and the laws are told the same.
+    // It is computed in one place, and the force laws receive the same value.
     EXPECT_EQ(context.encoder_step, scene::worst_over_workspace(*arm).encoder_step);
     EXPECT_EQ(context.tick, 0.001);
     EXPECT_GE(context.delay, 0.001) << file.path();

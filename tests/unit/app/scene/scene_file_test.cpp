@@ -14,7 +14,7 @@ namespace {
 
 const std::filesystem::path kFolder = support::scratch_folder() / "thimble_scene";
 
-// Writes a scene beside an arm and a mesh that exist, and tells what was wrong with it.
+// Writes a scene next to an existing arm and mesh. Returns the mistakes.
 driver::Result<scene::Scene> scene_from(const std::string& objects, const std::string& path,
                                         const std::string& more = "") {
   std::filesystem::create_directories(kFolder / "meshes");
@@ -36,7 +36,7 @@ std::string mistake(const std::string& objects, const std::string& path,
   return scene ? "" : scene.error().message;
 }
 
-TEST(SceneFile, ReadsObjectsAndTheHandsWay) {
+TEST(SceneFile, ReadsObjectsAndHandPath) {
   const auto scene =
       scene_from(kBall, kWait + "    - {t: 1, on: ball, near: [0, 0, 0.05], press: 0.004}\n");
   ASSERT_TRUE(scene.ok()) << scene.error().message;
@@ -63,7 +63,7 @@ TEST(SceneFile, ReadsSeveralObjectsIfTheirNamesDiffer) {
   EXPECT_NE(mistake("", kWait).find("objects: expected a list"), std::string::npos);
 }
 
-TEST(SceneFile, NamesTheWayOfContactOrSaysWhichThereAre) {
+TEST(SceneFile, ReadsContactOrListsTheChoices) {
   const auto scene = scene_from(
       "  - {name: b, mesh: cgal:ball.off, stiffness: 1, contact: {tracker: offset, blending: "
       "phong, normals: round, "
@@ -86,7 +86,7 @@ TEST(SceneFile, NamesTheWayOfContactOrSaysWhichThereAre) {
       std::string::npos);
 }
 
-TEST(SceneFile, NamesTheProfileOfABandAndOfNothingElse) {
+TEST(SceneFile, AcceptsAProfileOnlyForBands) {
   const auto with = [](const std::string& contact) {
     return "  - {name: b, mesh: cgal:ball.off, stiffness: 1, contact: {" + contact + "}}\n";
   };
@@ -104,7 +104,7 @@ TEST(SceneFile, NamesTheProfileOfABandAndOfNothingElse) {
   }
 }
 
-TEST(SceneFile, ReadsADentOrSaysWhatIsWrongWithIt) {
+TEST(SceneFile, ReadsDentsAndReportsMistakes) {
   const auto with = [](const std::string& dent) {
     return "  - {name: b, mesh: cgal:ball.off, stiffness: 1, body: {dent: {" + dent + "}}}\n";
   };
@@ -133,17 +133,17 @@ TEST(SceneFile, ReadsADentOrSaysWhatIsWrongWithIt) {
            {"rings: 1.5", "rings: expected a whole number"},
            {"region: whole, rings: 2", "rings: cannot be combined with region: whole"},
            {"integrator: explicit_euler", "integrator: expected symplectic_euler"},
-           {"stifness: 3", "perhaps \"stiffness\" was meant"}}) {
+           {"stifness: 3", "did you mean \"stiffness\"?"}}) {
     EXPECT_NE(mistake(with(wrong), kWait).find(said), std::string::npos)
         << mistake(with(wrong), kWait);
   }
   EXPECT_NE(
       mistake("  - {name: b, sphere: {radius: 0.02}, stiffness: 1, body: {dent: {}}}\n", kWait)
-          .find("body: a shape can move, but only a mesh gives way"),
+          .find("body: of a shape can only be motion"),
       std::string::npos);
 }
 
-TEST(SceneFile, NamesAMeshOrArmThatIsNotThere) {
+TEST(SceneFile, ReportsAMissingMeshOrArm) {
   EXPECT_NE(mistake("  - {name: b, mesh: cgal:cube.off, stiffness: 1}\n", kWait)
                 .find("scene.yaml:5: mesh: expected a file, found none at"),
             std::string::npos);
@@ -152,7 +152,7 @@ TEST(SceneFile, NamesAMeshOrArmThatIsNotThere) {
             std::string::npos);
 }
 
-TEST(SceneFile, TakesAnArmByNameUnlessAFileOfThatNameLiesBesideIt) {
+TEST(SceneFile, PrefersAnArmFileNextToTheSceneToAName) {
   ASSERT_TRUE(scene_from(kBall, kWait));  // writes the mesh
   std::filesystem::remove(kFolder / "falcon");
   const auto with_arm = [](const std::string& arm) {
@@ -176,26 +176,26 @@ TEST(SceneFile, TakesAnArmByNameUnlessAFileOfThatNameLiesBesideIt) {
             std::string::npos);
   EXPECT_NE(unknown.error().message.find("the name of an arm: falcon, "), std::string::npos)
       << unknown.error().message;
-  // What has a folder in it is a path.
+  // A name with a folder is a path.
   EXPECT_EQ(with_arm("arms/falcon.yaml").error().message.find("the name of an arm"),
             std::string::npos);
 }
 
 TEST(SceneFile, RefusesSizeTogetherWithScale) {
   EXPECT_NE(mistake("  - {name: b, mesh: cgal:ball.off, size: 1, scale: 1, stiffness: 1}\n", kWait)
-                .find("scale: cannot stand together with size"),
+                .find("scale: cannot be used with size"),
             std::string::npos);
 }
 
-TEST(SceneFile, RefusesStationsThatAreNeitherFreeNorOnAnObject) {
+TEST(SceneFile, RejectsWaypointsNeitherFreeNorOnAnObject) {
   EXPECT_NE(mistake(kBall, "    - {t: 0}\n").find("expected either at"), std::string::npos);
   EXPECT_NE(mistake(kBall, "    - {t: 0, on: cube, near: [0, 0, 0]}\n")
                 .find("on: expected an object of this scene, found \"cube\""),
             std::string::npos);
-  EXPECT_NE(mistake(kBall, kWait + kWait).find("t: expected a time after"), std::string::npos);
+  EXPECT_NE(mistake(kBall, kWait + kWait).find("t: expected a later time"), std::string::npos);
 }
 
-TEST(SceneFile, NamesAnEnergyStageInPlaceOfTheArms) {
+TEST(SceneFile, OverridesTheEnergyStageOfTheArm) {
   const auto own = scene_from(kBall, kWait),
              none = scene_from(kBall, kWait, "gate: {energy: none}\n");
   ASSERT_TRUE(own.ok());
@@ -205,8 +205,8 @@ TEST(SceneFile, NamesAnEnergyStageInPlaceOfTheArms) {
   EXPECT_NE(mistake(kBall, kWait, "gate: {force_max: 9}\n").find("force_max"), std::string::npos);
 }
 
-TEST(SceneFile, RefusesARateAtWhichTheGateTakesEveryTickForAStall) {
-  EXPECT_EQ(mistake(kBall, kWait, "rate: 50\n"), "");  // the arm's stall is 20 ms
+TEST(SceneFile, RejectsARateBelowTheStallLimit) {
+  EXPECT_EQ(mistake(kBall, kWait, "rate: 50\n"), "");  // `stall` of the arm is 20 ms
   for (const char* rate : {"rate: 49.9\n", "rate: 40\n"}) {
     EXPECT_NE(
         mistake(kBall, kWait, rate).find("scene.yaml:4: rate: expected 50 Hz or more, found "),
@@ -216,7 +216,7 @@ TEST(SceneFile, RefusesARateAtWhichTheGateTakesEveryTickForAStall) {
 }
 
 TEST(SceneFile, RefusesUnknownKeys) {
-  EXPECT_NE(mistake(kBall, kWait, "rait: 1000\n").find("perhaps \"rate\" was meant"),
+  EXPECT_NE(mistake(kBall, kWait, "rait: 1000\n").find("did you mean \"rate\"?"),
             std::string::npos);
 }
 
@@ -231,13 +231,13 @@ TEST(SceneFile, ReadsRepairAndSheets) {
   EXPECT_FALSE(plain->objects[0].repair);
   EXPECT_FALSE(plain->objects[0].sheet_thickness);
   EXPECT_NE(mistake(mesh + "open: {thickness: 0.001}, contact: {tracker: offset}}\n", kWait)
-                .find("cannot be pushed through a sheet"),
+                .find("cannot pass through a sheet"),
             std::string::npos);
   EXPECT_NE(mistake(mesh + "open: {thickness: 0.5}}\n", kWait).find("thickness"),
             std::string::npos);
   EXPECT_NE(mistake(mesh + "open: {}}\n", kWait).find("thickness"), std::string::npos);
   EXPECT_NE(mistake(mesh + "open: {thickness: 0.001}, body: {dent: {}}}\n", kWait)
-                .find("only a closed mesh gives way"),
+                .find("dent, plastic and snap need a closed mesh"),
             std::string::npos);
 }
 
@@ -253,7 +253,7 @@ TEST(PlaceMesh, GivesTheBoxItsSizeAndCentre) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : placed.vertices) box.extend(vertex);
   EXPECT_LT((box.center() - object.p_WO).norm(), 1e-15);
-  const double scale = 0.1 / 4;  // the file's box is 4 x 2 x 3
+  const double scale = 0.1 / 4;  // the box of the file is 4 x 2 x 3
   for (std::size_t i = 0; i < 3; ++i) {
     const double before = (mesh.vertices[i] - mesh.vertices[(i + 1) % 3]).norm();
     const double after = (placed.vertices[i] - placed.vertices[(i + 1) % 3]).norm();
@@ -261,7 +261,7 @@ TEST(PlaceMesh, GivesTheBoxItsSizeAndCentre) {
   }
 }
 
-TEST(SceneFile, ReadsShapesAndFieldsInPlaceOfMeshes) {
+TEST(SceneFile, ReadsShapesAndFields) {
   const auto scene = scene_from(
       "  - {name: wall, plane: {normal: [0, 2, 0]}, position: [0, 0.01, 0], stiffness: 500}\n"
       "  - {name: ball, sphere: {radius: 0.02}, stiffness: 400, damping: 1, effects: [{texture: "
@@ -280,7 +280,7 @@ TEST(SceneFile, ReadsShapesAndFieldsInPlaceOfMeshes) {
   EXPECT_EQ(scene->objects[1].effects.size(), 1U);
   const auto& block = std::get<render::EntryFaceBox>(scene->objects[2].shape->shape_W);
   EXPECT_EQ(block.half_sides, Eigen::Vector3d(0.005, 0.01, 0.015));
-  EXPECT_TRUE(block.inside({0.009, 0, 0}));  // turned: its longer side lies along x
+  EXPECT_TRUE(block.inside({0.009, 0, 0}));  // rotated: its longer side is along x
   EXPECT_TRUE(std::holds_alternative<render::WedgeBox>(scene->objects[3].shape->shape_W));
   EXPECT_FALSE(scene->objects[4].shape.has_value());
   driver::DeviceState state;
@@ -315,7 +315,7 @@ TEST(SceneFile, DrawsShapesWhereTheyAre) {
           object.shape->shape_W);
       EXPECT_NEAR(place, 0, 1e-15) << object.name;
     }
-    // Wound outwards: volumes are positive (that of a flat patch is nothing).
+    // Oriented outwards: volumes are positive (zero for a flat patch).
     if (object.name == "ball") {
       EXPECT_NEAR(volume, 4.0 / 3 * 3.14159265 * 8e-6, 1e-7);
     }
@@ -325,7 +325,7 @@ TEST(SceneFile, DrawsShapesWhereTheyAre) {
   }
 }
 
-TEST(SceneFile, SaysWhatIsWrongWithAShapeOrAField) {
+TEST(SceneFile, ReportsMistakesInShapesAndFields) {
   const auto wrong = [](const std::string& object) {
     return mistake("  - {name: a, " + object + "}\n", kWait);
   };

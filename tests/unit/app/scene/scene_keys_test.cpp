@@ -1,5 +1,5 @@
-// The reference of keys says what the readers do: every key that a shipped file has, and none that
-// its reader would refuse.
+// The reference of keys matches the readers: it has every key of the shipped files, with unit,
+// limits and default.
 #include "scene_keys.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ bool has(const std::vector<KeyNote>& keys, const std::string& place, const std::
                      [&](const KeyNote& note) { return note.place == place && note.key == key; });
 }
 
-/// Collects the keys of a file that the reference does not have.
+/// Collects the keys of a file that are missing in the reference.
 void collect_unknown(const YAML::Node& node, const std::string& place,
                      const std::vector<KeyNote>& keys, std::set<std::string>& unknown) {
   if (node.IsSequence()) {
@@ -71,19 +71,29 @@ TEST(SceneKeys, HaveEveryKeyOfEveryShippedArm) {
   EXPECT_GE(files, 5);
 }
 
-TEST(SceneKeys, TellUnitLimitsAndDefault) {
+TEST(SceneKeys, HaveMeaningUnitLimitsAndDefault) {
   const auto keys = scene_keys();
   ASSERT_TRUE(keys);
   const std::string text = key_text(*keys, "rate");
   EXPECT_NE(text.find("a number from 10 to 100000 Hz; default 1000"), std::string::npos) << text;
   EXPECT_NE(key_text(*keys, "stiffness").find("a number from 0 to 100000 N/m; required"),
             std::string::npos);
-  EXPECT_NE(key_text(*keys, "search").find("may be left out"), std::string::npos);
+  EXPECT_NE(key_text(*keys, "search").find("optional"), std::string::npos);
+  EXPECT_NE(text.find("\n                         Rate of the servo loop.\n"), std::string::npos)
+      << text;
   EXPECT_EQ(key_text(*keys, "colour"), "");
 }
 
-// Two keys of which one may stand, a key below a map that may be left out, and keys of a list.
-TEST(SceneKeys, HaveKeysThatStandOnlyBesideOthers) {
+TEST(SceneKeys, DistinguishRequiredAndSometimesRequired) {
+  const auto keys = scene_keys();
+  ASSERT_TRUE(keys);
+  EXPECT_NE(key_text(*keys, "duration").find("; required"), std::string::npos);
+  EXPECT_NE(key_text(*keys, "near").find("; sometimes required"), std::string::npos);
+  EXPECT_NE(key_text(arm_keys(), "geometry").find("; sometimes required"), std::string::npos);
+}
+
+// Keys that exclude each other, a key in an optional map, and keys of a list.
+TEST(SceneKeys, IncludeKeysThatDependOnOthers) {
   const auto keys = scene_keys();
   ASSERT_TRUE(keys);
   EXPECT_TRUE(has(*keys, "objects[]", "size"));

@@ -1,4 +1,4 @@
-// Files of which only regular ones are read, so that no pipe keeps the program waiting.
+// Only regular files are listed and read, so that a pipe cannot block the program.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,4 +1,5 @@
-// Meshes that runs of like scenes share: there once, the same to touch, and never changed by one.
+// Meshes that runs of similar scenes share: they exist once, give bit-identical runs, and never
+// change.
 #include "thimble/scene/shared_meshes.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +43,7 @@ class SharedMeshesTest : public ::testing::Test {
     }
     return std::move(opened).value();
   }
-  /// Writes a scene with a ball of its own.
+  /// Writes a scene with its own ball.
   static std::filesystem::path ball_scene(double radius) {
     const auto folder = support::scratch_folder() / "shared_meshes";
     std::filesystem::create_directories(folder);
@@ -69,7 +70,7 @@ class SharedMeshesTest : public ::testing::Test {
   }
 };
 
-TEST_F(SharedMeshesTest, AreThereOnceForRunsOfOneScene) {
+TEST_F(SharedMeshesTest, ExistOnceForRunsOfOneScene) {
   const auto scene = ball_scene(0.03);
   const auto meshes = std::make_shared<SharedMeshes>();
   const auto first = open(scene, meshes), second = open(scene, meshes), alone = open(scene, {});
@@ -83,7 +84,7 @@ TEST_F(SharedMeshesTest, AreThereOnceForRunsOfOneScene) {
   EXPECT_NE(drawn(*first), drawn(*alone));
 }
 
-TEST_F(SharedMeshesTest, OfEachPlaceSizeAndWayToTouchAreTheirOwn) {
+TEST_F(SharedMeshesTest, DependOnPlaceSizeAndContact) {
   const auto scene = ball_scene(0.03);
   const auto meshes = std::make_shared<SharedMeshes>();
   const auto plain = open(scene, meshes);
@@ -105,10 +106,10 @@ TEST_F(SharedMeshesTest, OfEachPlaceSizeAndWayToTouchAreTheirOwn) {
   EXPECT_EQ(meshes->surfaces(), 4U);
 }
 
-TEST_F(SharedMeshesTest, OfAFileThatHasChangedAreReadAnew) {
+TEST_F(SharedMeshesTest, AreReadAgainIfTheirFileHasChanged) {
   const auto meshes = std::make_shared<SharedMeshes>();
   const auto before = open(ball_scene(0.03), meshes);
-  const auto scene = ball_scene(0.02);  // as many digits, so perhaps as many bytes
+  const auto scene = ball_scene(0.02);  // same number of digits, so the file may have the same size
   std::filesystem::last_write_time(
       scene.parent_path() / "ball.off",
       std::filesystem::last_write_time(scene) + std::chrono::seconds(2));
@@ -117,7 +118,7 @@ TEST_F(SharedMeshesTest, OfAFileThatHasChangedAreReadAnew) {
   EXPECT_NEAR((drawn(*after)->vertices[0] - Eigen::Vector3d(0, 0, -0.03)).norm(), 0.02, 1e-9);
 }
 
-TEST_F(SharedMeshesTest, AreHeldUntilNobodyUsesThem) {
+TEST_F(SharedMeshesTest, AreKeptWhileInUse) {
   const auto meshes = std::make_shared<SharedMeshes>();
   auto run = open(ball_scene(0.03), meshes);
   meshes->drop_unused();
@@ -130,8 +131,8 @@ TEST_F(SharedMeshesTest, AreHeldUntilNobodyUsesThem) {
   EXPECT_EQ(meshes->surfaces(), 0U);
 }
 
-TEST_F(SharedMeshesTest, OfOneSceneAreSharedByItsArms) {
-  // A ball that stands still in place of the beam.
+TEST_F(SharedMeshesTest, AreSharedByTheArmsOfAScene) {
+  // A ball at rest replaces the beam.
   const auto mesh = ball_scene(0.03).parent_path() / "ball.off";
   const auto with_ball = [&mesh](scene::Scene& read) {
     scene::SceneObject ball;
@@ -147,8 +148,8 @@ TEST_F(SharedMeshesTest, OfOneSceneAreSharedByItsArms) {
   EXPECT_EQ(touched(**opened, 0), touched(**opened, 1));
 }
 
-// Dents, prints and walls that snap: what one run does to its object no other one sees.
-TEST_F(SharedMeshesTest, OfObjectsThatGiveWayAreNotChanged) {
+// Dents, prints and snapped walls of one run do not appear in another.
+TEST_F(SharedMeshesTest, OfDeformingObjectsAreNotChanged) {
   for (const char* name : {"trampoline", "clay", "tin_can"}) {
     const auto meshes = std::make_shared<SharedMeshes>();
     const auto pressed = open(name, meshes), other = open(name, meshes), alone = open(name, {});
@@ -167,7 +168,7 @@ TEST_F(SharedMeshesTest, OfObjectsThatGiveWayAreNotChanged) {
   }
 }
 
-TEST_F(SharedMeshesTest, MayBeAskedForByThreadsAtOnce) {
+TEST_F(SharedMeshesTest, AreThreadSafe) {
   const auto scene = std::filesystem::path(THIMBLE_SOURCE_DIR) / "tests/data/scenes/two_boxes.yaml";
   const std::uint64_t expected = hash_of(*open(scene, {}));
   const auto meshes = std::make_shared<SharedMeshes>();

@@ -29,14 +29,14 @@ TEST(LoadByName, ReadsTheNamedArmAndScene) {
   const auto touched = scene::load_scene("rubber");
   ASSERT_TRUE(touched) << touched.error().message;
   EXPECT_EQ(touched->file, *scene::find_scene("rubber"));
-  // Another arm in place of the scene's own, by name as well.
+  // Another arm replaces that of the scene, also by name.
   const auto other = scene::load_scene("rubber", {.arm = "woodenhaptics"});
   ASSERT_TRUE(other) << other.error().message;
   EXPECT_EQ(other->arms.front().arm.name, "woodenhaptics");
   EXPECT_EQ(other->arms.front().own_arm_file, touched->arms.front().arm_file);
 }
 
-TEST(LoadByName, SaysWhichNamesThereAreWhereItKnowsNone) {
+TEST(LoadByName, UnknownNameListsTheKnownOnes) {
   const auto arm = scene::load_arm("vintage_fantom");
   ASSERT_FALSE(arm);
   EXPECT_NE(arm.error().message.find("woodenhaptics"), std::string::npos) << arm.error().message;
@@ -55,7 +55,7 @@ std::unique_ptr<SimulatedDevice> open_pressed() {
   return opened ? std::move(opened).value() : nullptr;
 }
 
-/// A wall at z = 0, and what was sent of its force.
+/// Wall at z = 0, which stores the force that was sent.
 struct Wall {
   ForceCommand operator()(const DeviceState& state) noexcept {
     ForceCommand command;
@@ -90,7 +90,7 @@ TEST(SimulatedDevice, HoldsTheHandBehindAWallAsSoonAsItIsActive) {
   EXPECT_EQ(arm->run(1.5, wall, wall), driver::ServoEnd::kDone);
   // The springs of hand (300 N/m) and wall share 5 mm; the arm's dry friction is 0.04 N.
   EXPECT_NEAR(wall.last.f_sent_W[2], 0.005 * 300 * 500 / 800.0, 0.05);
-  // And the loop leaves it with zero force.
+  // The loop ends with zero force.
   EXPECT_EQ(arm->device().stage(), driver::DeviceStage::kIdle);
   EXPECT_EQ(arm->device().f_sent_W(), Eigen::Vector3d(0, 0, 0));
 }
@@ -119,7 +119,7 @@ TEST(SimulatedDevice, HasTheGateOfItsArmFile) {
   EXPECT_LE(most, 5 * (1 + 1e-9));
 }
 
-TEST(SimulatedDevice, RefusesWhatNoLoopAndNoArmCanDo) {
+TEST(SimulatedDevice, RejectsImpossibleRatesAndPaths) {
   for (const double rate : {kNaN, 0.0, -1000.0, 9.0, 1e6, kInfinity}) {
     EXPECT_FALSE(SimulatedDevice::open("vintage_phantom", {{0.0, {0, 0, 0}}}, {.rate = rate}));
   }
@@ -134,7 +134,7 @@ TEST(SimulatedDevice, RefusesWhatNoLoopAndNoArmCanDo) {
   EXPECT_FALSE(SimulatedDevice::open("nobody_s_arm", {{0.0, {0, 0, 0}}}));
 }
 
-TEST(SimulatedDevice, RunsNoTickInNoTime) {
+TEST(SimulatedDevice, RunsNoTickInZeroTime) {
   const auto arm = open_pressed();
   ASSERT_NE(arm, nullptr);
   ASSERT_TRUE(arm->device().activate());

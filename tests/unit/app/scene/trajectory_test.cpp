@@ -40,7 +40,7 @@ TEST(Trajectory, ReadsColumnsInAnyOrderAndUnit) {
   EXPECT_EQ(session::trajectory_at(*read, -1, hint).p, (*read)[0].p);
 }
 
-TEST(Trajectory, TellsWhichLineIsWrongAndWhatToDo) {
+TEST(Trajectory, ErrorsNameLineAndRemedy) {
   const auto mistake = [](const std::string& text, const session::TrajectoryForm& form = {}) {
     const auto read = session::read_trajectory(file_of(text), form);
     return read ? "" : read.error().message;
@@ -55,9 +55,9 @@ TEST(Trajectory, TellsWhichLineIsWrongAndWhatToDo) {
   EXPECT_NE(mistake("0 0 0 0\n", {.columns = "t x y z fx"}).find("--columns"), std::string::npos);
 }
 
-/// Makes what a device would do on a ball of 400 N/m whose surface gives the forces: the pipeline
-/// of measured data, with truth in place of the measurement.
-TEST(Trajectory, AnAnalyticProbeFeelsTheForcesThatItWasMadeOf) {
+/// Creates the motion of a device on a ball of 400 N/m whose surface gives the forces: the pipeline
+/// for measured data, with exact values instead of measurements.
+TEST(Trajectory, AnalyticProbeReproducesItsForces) {
   const auto scene =
       scene::load_scene(std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/rubber.yaml");
   ASSERT_TRUE(scene) << scene.error().message;
@@ -83,7 +83,7 @@ TEST(Trajectory, AnAnalyticProbeFeelsTheForcesThatItWasMadeOf) {
   EXPECT_LT(compared.direction_p99, 1e-6);
   EXPECT_GT(compared.directions, 1000u);
   EXPECT_EQ(compared.contact_disagrees, 0u);
-  // Forces that are not these are told apart.
+  // Other forces are detected.
   for (session::TrajectoryPoint& point : way) point.f = 2 * Eigen::Vector3d(point.f.z(), 0, 0);
   auto again = scene::SceneObjects::build(plain);
   const session::TrajectoryComparison wrong = session::replay_trajectory(way, 1000, **again);
@@ -91,8 +91,8 @@ TEST(Trajectory, AnAnalyticProbeFeelsTheForcesThatItWasMadeOf) {
   EXPECT_GT(wrong.direction_p99, 0.5);
 }
 
-/// A trajectory is told in the frame of a mesh file or in the world, and touches the same.
-TEST(Trajectory, TouchesASceneInTheFrameOfAMeshOrOfTheWorld) {
+/// A trajectory in the frame of a mesh file or in the world gives the same contact.
+TEST(Trajectory, AcceptsTheFrameOfAMeshOrOfTheWorld) {
   const std::filesystem::path scene_file =
       std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/scenes/clay.yaml";
   const auto scene = scene::load_scene(scene_file);

@@ -11,7 +11,7 @@
 namespace thimble::scene {
 namespace {
 
-/// An environment variable that has another value for as long as this lives.
+/// Sets an environment variable during its lifetime.
 class Variable {
  public:
   Variable(const char* name, const char* value) : name_(name) {
@@ -34,7 +34,7 @@ std::string home_in_list_of_users() {
              : "/dev/null/HOME-is-not-set";
 }
 
-TEST(UserFolders, LieInHome) {
+TEST(UserFolders, AreInHome) {
   const Variable home("HOME", "/somewhere"), state("XDG_STATE_HOME", nullptr);
   EXPECT_EQ(state_folder(), "/somewhere/.local/state/thimble");
 }
@@ -49,7 +49,7 @@ TEST(UserFolders, EmptyHomeIsNoHome) {
   EXPECT_EQ(state_folder(), home_in_list_of_users() + "/.local/state/thimble");
 }
 
-TEST(UserFolders, RelativePathsCountForNothing) {
+TEST(UserFolders, RelativePathsAreIgnored) {
   const Variable home("HOME", "here"), state("XDG_STATE_HOME", "there");
   EXPECT_EQ(state_folder(), home_in_list_of_users() + "/.local/state/thimble");
 }

@@ -10,7 +10,7 @@
 namespace thimble::scene {
 namespace {
 
-// Reads `text` as a small file with one number and one word, and tells what was wrong with it.
+// Reads `text` as a small file with one number and one word. Returns the mistakes.
 std::string mistakes_in(const std::string& text) {
   auto file = scene::YamlFile::parse(text, "arm.yaml");
   if (!file) return file.error().message;
@@ -30,16 +30,16 @@ std::string mistakes_in(const std::string& text) {
   return done ? "" : done.error().message;
 }
 
-TEST(YamlReader, ReadsWhatIsRight) {
+TEST(YamlReader, ReadsValidValues) {
   EXPECT_EQ(mistakes_in("stiffness: 800\nname: arm\nplace: [0.1, -1, +1e-1]\nkind: ideal\n"), "");
 }
 
-TEST(YamlReader, TellsFileLineAndRangeOfAWordInPlaceOfANumber) {
+TEST(YamlReader, NonNumberErrorNamesFileLineAndRange) {
   EXPECT_EQ(mistakes_in("name: a\nstiffness: stiff\n"),
             "arm.yaml:2: stiffness: expected a number from 0 to 100000 N/m, found \"stiff\".");
 }
 
-TEST(YamlReader, RefusesEveryValueThatIsNoFiniteNumberInRange) {
+TEST(YamlReader, RejectsValuesThatAreNotFiniteOrInRange) {
   for (const std::string value :
        {".nan",   "nan",    ".inf", "-.inf", "inf",     "-1",   "1e6", "1e999",
         "0x10",   "12 N/m", "1,5",  "'800'", "\"800\"", "~",    "",    "[800]",
@@ -58,14 +58,13 @@ TEST(YamlReader, NamesTheMissingKey) {
 
 TEST(YamlReader, SuggestsTheNearestKnownKeyForAnUnknownOne) {
   EXPECT_EQ(mistakes_in("stiffness: 1\nnmae: a\n"),
-            "arm.yaml:2: nmae: is no key that is known here; perhaps \"name\" was meant.");
-  EXPECT_EQ(mistakes_in("stiffness: 1\nwxyzwxyz: a\n"),
-            "arm.yaml:2: wxyzwxyz: is no key that is known here.");
+            "arm.yaml:2: nmae: unknown key (did you mean \"name\"?).");
+  EXPECT_EQ(mistakes_in("stiffness: 1\nwxyzwxyz: a\n"), "arm.yaml:2: wxyzwxyz: unknown key.");
 }
 
-TEST(YamlReader, RefusesAKeyThatStandsTwice) {
+TEST(YamlReader, RejectsADuplicateKey) {
   EXPECT_EQ(mistakes_in("stiffness: 1\nname: a\nstiffness: 2\n"),
-            "arm.yaml:3: stiffness: stands twice, first in line 1; keep one of them.");
+            "arm.yaml:3: stiffness: occurs twice, first in line 1; keep one of them.");
 }
 
 TEST(YamlReader, RefusesEmptyFilesInOneSentence) {
@@ -74,22 +73,21 @@ TEST(YamlReader, RefusesEmptyFilesInOneSentence) {
   }
 }
 
-TEST(YamlReader, RefusesWhatIsNoMap) {
+TEST(YamlReader, RejectsNonMaps) {
   EXPECT_EQ(mistakes_in("- 1\n- 2\n"),
             "arm.yaml:1: expected a map of keys and values, found a list of 2.");
   EXPECT_EQ(mistakes_in("hello\n"),
             "arm.yaml:1: expected a map of keys and values, found \"hello\".");
 }
 
-TEST(YamlReader, TellsTheLineOfASyntaxError) {
+TEST(YamlReader, SyntaxErrorNamesTheLine) {
   EXPECT_TRUE(
-      mistakes_in("name: a\nstiffness: [1, 2\n").starts_with("arm.yaml:3: is not proper YAML"));
-  EXPECT_TRUE(
-      mistakes_in("name: a\n stiffness: 1\n").starts_with("arm.yaml:2: is not proper YAML"));
-  EXPECT_TRUE(mistakes_in("name: *nobody\n").starts_with("arm.yaml:1: is not proper YAML"));
+      mistakes_in("name: a\nstiffness: [1, 2\n").starts_with("arm.yaml:3: is not valid YAML"));
+  EXPECT_TRUE(mistakes_in("name: a\n stiffness: 1\n").starts_with("arm.yaml:2: is not valid YAML"));
+  EXPECT_TRUE(mistakes_in("name: *missing\n").starts_with("arm.yaml:1: is not valid YAML"));
 }
 
-TEST(YamlReader, AnswersHugeNestingWithASentence) {
+TEST(YamlReader, DeepNestingIsAnError) {
   const std::string said = mistakes_in(std::string(200000, '['));
   EXPECT_TRUE(said.starts_with("arm.yaml")) << said.substr(0, 200);
   EXPECT_LT(said.size(), 300U);
@@ -100,8 +98,8 @@ TEST(YamlReader, RefusesASecondDocument) {
             std::string::npos);
 }
 
-TEST(YamlReader, EndsWhereTheParserStandsStill) {
-  // Before such a comma yaml-cpp finds one empty document after the other.
+TEST(YamlReader, EndsIfTheParserMakesNoProgress) {
+  // Before such a comma yaml-cpp returns one empty document after the other.
   for (const char* text : {",", ",nv", "a: 1\n---\n,b", "a: 1\n,b"}) {
     const auto file = scene::YamlFile::parse(text, "arm.yaml");
     ASSERT_FALSE(file.ok()) << text;
@@ -134,7 +132,7 @@ TEST(YamlReader, TurnsAboutTheFixedAxesInOrder) {
   auto file = scene::YamlFile::parse("r: [[x, 90], [z, 90]]\n", "arm.yaml");
   ASSERT_TRUE(file.ok());
   const Eigen::Matrix3d R = file->root().optional_rotation("r");
-  // y -> z by the first turn, and z stays z in the second; z -> -y -> x.
+  // The first rotation maps y to z, and the second keeps z; z -> -y -> x.
   EXPECT_LT((R * Eigen::Vector3d::UnitY() - Eigen::Vector3d::UnitZ()).norm(), 1e-15);
   EXPECT_LT((R * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitX()).norm(), 1e-15);
   EXPECT_TRUE(file->finish().ok());
@@ -152,13 +150,13 @@ TEST(YamlReader, KeepsTheFirstFiveMistakesAndCountsTheRest) {
   EXPECT_TRUE(said.ends_with("\n2 more mistakes follow.")) << said;
 }
 
-TEST(YamlReader, NamesAFileThatIsNotThere) {
+TEST(YamlReader, ReportsAMissingFile) {
   const auto file = scene::YamlFile::load("no/such/file.yaml");
   ASSERT_FALSE(file.ok());
   EXPECT_EQ(file.error().message, "no/such/file.yaml: there is no such file.");
 }
 
-// Reads whole numbers, and compares them with each other.
+// Reads integers, and checks them against each other.
 std::string whole_mistakes_in(const std::string& text) {
   auto file = scene::YamlFile::parse(text, "arm.yaml");
   if (!file) return file.error().message;
@@ -178,7 +176,7 @@ TEST(YamlWhole, ReadsEveryFormOfAWholeNumber) {
   }
 }
 
-TEST(YamlWhole, RefusesAllElseWithOneMessage) {
+TEST(YamlWhole, RejectsOtherValuesWithOneMessage) {
   for (const std::string value : {"7.5",
                                   "0x1f",
                                   "0o17",
@@ -231,8 +229,8 @@ TEST(YamlReader, ChecksAgainstWrongValuesAreNotReported) {
             "arm.yaml:1: seed: expected a whole number from 1 to 9007199254740992, found \"0x3\".");
 }
 
-TEST(YamlReader, ManyUnknownKeysTakeTimeByTheirNumber) {
-  // Reads n keys and gives the processor time of it, s.
+TEST(YamlReader, TimeIsLinearInUnknownKeys) {
+  // Reads n keys. Returns the processor time, s.
   const auto seconds = [](int n) {
     std::string text = "stiffness: 1\n";
     for (int i = 0; i < n; ++i) text += "unknown_key_" + std::to_string(i) + ": 1\n";
@@ -241,7 +239,7 @@ TEST(YamlReader, ManyUnknownKeysTakeTimeByTheirNumber) {
     return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   };
   seconds(1000);
-  // Five times the keys take 25 times as long where each is compared with each other.
+  // If each key were compared with every other, five times the keys would take 25 times as long.
   const double few = std::min(seconds(16'000), seconds(16'000));
   EXPECT_LT(std::min(seconds(80'000), seconds(80'000)), 12 * few);
 }

@@ -1,4 +1,4 @@
-// Characters that a YAML file cannot have at their place: named with line and column.
+// Characters that YAML does not allow where they are: reported with line and column.
 #include "yaml/yaml_text.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace thimble::scene {
 namespace {
 
-/// Reads a scene-like text and returns its mistakes.
+/// Reads a text similar to a scene and returns its mistakes.
 std::string mistakes_of_text(const std::string& text) {
   auto file = YamlFile::parse(text, "s.yaml");
   if (!file) return file.error().message;
@@ -30,8 +30,8 @@ std::string mistakes_of_text(const std::string& text) {
 
 TEST(YamlText, Latin1IsNamedWithLineAndColumn) {
   EXPECT_EQ(mistakes_of_text("rate: 7\nname: caf\xe9\n"),
-            "s.yaml:2:10: the byte 0xE9 is not UTF-8; save the file as UTF-8, it may be Latin-1 "
-            "(iconv -f latin1 -t utf8).");
+            "s.yaml:2:10: the byte 0xE9 is not UTF-8; save the file as UTF-8 (it may be "
+            "Latin-1: iconv -f latin1 -t utf8).");
 }
 
 TEST(YamlText, ColumnsCountCharacters) {
@@ -51,7 +51,7 @@ TEST(YamlText, OnlyShortestFormsOfCharactersAreUtf8) {
   }
 }
 
-TEST(YamlText, AllOfUtf8IsTaken) {
+TEST(YamlText, AcceptsAllOfUtf8) {
   EXPECT_FALSE(
       find_invalid_utf8("a\xc2\x80\xdf\xbf\xe0\xa0\x80\xed\x9f\xbf\xee\x80\x80\xef\xbf\xbf"
                         "\xf0\x90\x80\x80\xf4\x8f\xbf\xbf\n"));
@@ -71,31 +71,31 @@ TEST(YamlText, Utf16IsLeftToTheParser) {
 
 TEST(YamlText, IndentingTabIsNamed) {
   EXPECT_EQ(mistakes_of_text("object:\n\tstiffness: 7\n"),
-            "s.yaml:2:1: a tab cannot indent in YAML; write spaces instead.");
+            "s.yaml:2:1: a tab cannot indent in YAML; use spaces instead.");
   EXPECT_EQ(mistakes_of_text("object:\n  stiffness: 7\n \trate: 7\n"),
-            "s.yaml:3:2: a tab cannot indent in YAML; write spaces instead.");
+            "s.yaml:3:2: a tab cannot indent in YAML; use spaces instead.");
 }
 
 TEST(YamlText, IndentingNoBreakSpaceIsNamed) {
   EXPECT_EQ(mistakes_of_text("object:\n\xc2\xa0 stiffness: 7\n"),
-            "s.yaml:2:1: a no-break space (U+00A0) is no blank in YAML; write a space instead.");
+            "s.yaml:2:1: a no-break space (U+00A0) is not a blank in YAML; use a space instead.");
 }
 
 TEST(YamlText, NoBreakSpaceBehindAColonIsNamed) {
   EXPECT_EQ(mistakes_of_text("name: a\nrate:\xc2\xa0"
                              "7\n"),
-            "s.yaml:2:6: a no-break space (U+00A0) is no blank in YAML; write a space instead.");
+            "s.yaml:2:6: a no-break space (U+00A0) is not a blank in YAML; use a space instead.");
 }
 
 TEST(YamlText, NoBreakSpaceBehindANumberIsNamed) {
   EXPECT_EQ(mistakes_of_text("rate: 7\xc2\xa0\n"),
-            "s.yaml:1:8: a no-break space (U+00A0) is no blank in YAML; write a space instead.");
+            "s.yaml:1:8: a no-break space (U+00A0) is not a blank in YAML; use a space instead.");
   EXPECT_EQ(mistakes_of_text("rate: 7\xe2\x80\xaf# Hz\n"),
-            "s.yaml:1:8: a narrow no-break space (U+202F) is no blank in YAML; write a space "
+            "s.yaml:1:8: a narrow no-break space (U+202F) is not a blank in YAML; use a space "
             "instead.");
 }
 
-TEST(YamlText, BlanksWithinTextsAreFree) {
+TEST(YamlText, BlanksWithinTextsAreAllowed) {
   EXPECT_EQ(mistakes_of_text("name: 5\xc2\xa0N\trate\nrate:\t7\t# 5\xc2\xa0Hz\n\t\n"), "");
   EXPECT_EQ(mistakes_of_text("name: \"\xc2\xa0\"\nrate: 7\n"), "");
   EXPECT_EQ(mistakes_of_text("{\n\t\"rate\": 7\n}\n"), "");
@@ -104,7 +104,7 @@ TEST(YamlText, BlanksWithinTextsAreFree) {
 TEST(YamlText, OtherMistakesKeepTheirSentence) {
   EXPECT_EQ(mistakes_of_text("name: 5\xc2\xa0N\nrate: fast\n"),
             "s.yaml:2: rate: expected a number from 0 to 1000 Hz, found \"fast\".");
-  EXPECT_NE(mistakes_of_text("name: \"a\\\"\xc2\xa0: \"\nrate: [\n").find("is not proper YAML"),
+  EXPECT_NE(mistakes_of_text("name: \"a\\\"\xc2\xa0: \"\nrate: [\n").find("is not valid YAML"),
             std::string::npos);
 }
 

@@ -26,7 +26,7 @@ class EventLogTest : public ::testing::Test {
  protected:
   EventLogTest() {
     std::filesystem::remove(file_);
-    EXPECT_TRUE(scene::begin_log({.talk = talk_, .file = file_, .heading = "test"}));
+    EXPECT_TRUE(scene::begin_log({.verbosity = verbosity_, .file = file_, .heading = "test"}));
     options_.log = true;
     options_.duration = 1;
   }
@@ -51,7 +51,7 @@ class EventLogTest : public ::testing::Test {
     return lines;
   }
 
-  scene::Talk talk_ = scene::Talk::kNormal;
+  scene::Verbosity verbosity_ = scene::Verbosity::kNormal;
   std::filesystem::path file_ = support::scratch_folder() / "events.log";
   SessionOptions options_;
   std::atomic<bool> stop_{false};

@@ -24,7 +24,7 @@ class ScriptedCounters final : public EventCounters {
     return std::accumulate(counts.begin(), counts.end(), taken);
   }
   ActivityCounts activities() const noexcept override { return counts; }
-  std::uint64_t wires_taken() const noexcept override { return taken; }
+  std::uint64_t links_replaced() const noexcept override { return taken; }
   std::array<double, 3> f_wall_W() const noexcept override { return wall_W; }
   std::uint64_t& of(Activity activity) { return counts[static_cast<std::size_t>(activity)]; }
 
@@ -106,7 +106,8 @@ TEST_F(EventWatchTest, ReportsEachStageOnce) {
   record_.stage = DeviceStage::kActive;
   record_.fault = Fault::kNone;
   ticks(2);
-  EXPECT_EQ(events(), Events({event(10, EventKind::kWireTaken), event(10, EventKind::kActivated)}));
+  EXPECT_EQ(events(),
+            Events({event(10, EventKind::kLinkReplaced), event(10, EventKind::kActivated)}));
   record_.stage = DeviceStage::kIdle;
   ticks(2);
   EXPECT_EQ(events(), Events({event(12, EventKind::kDeactivated)}));

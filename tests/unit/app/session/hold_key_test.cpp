@@ -49,7 +49,7 @@ TEST(HeldKey, SlowTypingDoesNotCount) {
 
 TEST(ViewerKey, IsNotHeldWithoutAPicture) {
   ViewerKey key(7);
-  key.look(7, 1000 * kMs);
+  key.update(7, 1000 * kMs);
   EXPECT_LE(key.until_ns(), 1000 * kMs);
 }
 
@@ -57,15 +57,15 @@ TEST(ViewerKey, IsHeldWhilePicturesReportIt) {
   ViewerKey key(7);
   for (int i = 0; i < 100; ++i) {
     const std::int64_t now = (1000 + 16 * i) * kMs;
-    key.look(8 + static_cast<std::uint64_t>(i), now);
+    key.update(8 + static_cast<std::uint64_t>(i), now);
     EXPECT_GT(key.until_ns(), now + 16 * kMs);
   }
 }
 
 TEST(ViewerKey, LapsesSoonAfterTheLastPicture) {
   ViewerKey key(7);
-  key.look(8, 1000 * kMs);
-  for (int i = 1; i < 100; ++i) key.look(8, (1000 + 5 * i) * kMs);
+  key.update(8, 1000 * kMs);
+  for (int i = 1; i < 100; ++i) key.update(8, (1000 + 5 * i) * kMs);
   EXPECT_EQ(key.until_ns(), 1000 * kMs + HeldKey::kLasts_ns);
 }
 

@@ -117,21 +117,21 @@ TEST(Interrupt, SurvivesHangupUnderNohup) {
 TEST(Interrupt, SignalBurstDoesNotAbandonTheArm) {
   EXPECT_EQ(outcome_of([] {
               scene::catch_interrupts();
-              const scene::LeavingGuard guard;
+              const scene::ForceExitGuard guard;
               for (int i = 0; i < 1000; ++i) raise(i % 2 == 0 ? SIGINT : SIGTERM);
             }),
             0);
   EXPECT_EQ(outcome_of([] {
               scene::catch_interrupts();
-              const scene::LeavingGuard guard;
+              const scene::ForceExitGuard guard;
               raise(SIGINT);
-              rest(scene::kLeavingMost_ns + kMs);
+              rest(scene::kExitTimeMax_ns + kMs);
               raise(SIGTERM);
             }),
             100 + SIGTERM);
   EXPECT_EQ(outcome_of([] {
               scene::catch_interrupts();
-              { const scene::LeavingGuard guard; }
+              { const scene::ForceExitGuard guard; }
               raise(SIGINT);
               rest(scene::kOneRequest_ns + kMs);
               raise(SIGINT);
@@ -158,9 +158,9 @@ TEST(Interrupt, SigtermEndsProgramThatHangs) {
 TEST(Interrupt, SigtermIsNotRepeatedWhileAnArmIsOpen) {
   EXPECT_EQ(outcome_of([] {
               scene::catch_interrupts();
-              const scene::LeavingGuard guard;
+              const scene::ForceExitGuard guard;
               raise(SIGTERM);
-              rest(scene::kHangingMost_ns + scene::kOneRequest_ns);
+              rest(scene::kBlockedTimeMax_ns + scene::kOneRequest_ns);
               _exit(7);
             }),
             7);
@@ -169,7 +169,7 @@ TEST(Interrupt, SigtermIsNotRepeatedWhileAnArmIsOpen) {
 TEST(Interrupt, CtrlZEndsTheProgramWhileAnArmIsOpen) {
   EXPECT_EQ(outcome_of([] {
               const auto& flag = scene::catch_interrupts();
-              scene::leave_rather_than_stop();
+              scene::treat_sigtstp_as_exit();
               raise(SIGTSTP);
               raise(SIGTTIN);
               raise(SIGTTOU);

@@ -76,12 +76,12 @@ TEST_F(LogTest, LineHasTimeLevelProcessAndSource) {
 TEST_F(LogTest, TerminalShowsWarningsAndErrorsByDefault) {
   ASSERT_TRUE(begin_log({}));
   EXPECT_EQ(said_by([] { say_everything(logger()); }), "thimble: a warning\nthimble: an error\n");
-  ASSERT_TRUE(begin_log({.talk = Talk::kQuiet}));
+  ASSERT_TRUE(begin_log({.verbosity = Verbosity::kQuiet}));
   EXPECT_EQ(said_by([] { say_everything(logger()); }), "thimble: an error\n");
-  ASSERT_TRUE(begin_log({.talk = Talk::kDebug}));
+  ASSERT_TRUE(begin_log({.verbosity = Verbosity::kDebug}));
   EXPECT_EQ(said_by([] { say_everything(logger()); }),
             "thimble: a detail\nthimble: an event\nthimble: a warning\nthimble: an error\n");
-  ASSERT_TRUE(begin_log({.talk = Talk::kTrace}));
+  ASSERT_TRUE(begin_log({.verbosity = Verbosity::kTrace}));
   EXPECT_EQ(said_by([] { say_everything(logger()); }),
             "thimble: a trace\nthimble: a detail\nthimble: an event\nthimble: a warning\n"
             "thimble: an error\n");
@@ -90,14 +90,14 @@ TEST_F(LogTest, TerminalShowsWarningsAndErrorsByDefault) {
 TEST_F(LogTest, RunEventsAreOnTheTerminalOnlyOnRequest) {
   ASSERT_TRUE(begin_log({}));
   EXPECT_EQ(said_by([] { say_everything(*run_logger("box")); }), "");
-  ASSERT_TRUE(begin_log({.talk = Talk::kDebug}));
+  ASSERT_TRUE(begin_log({.verbosity = Verbosity::kDebug}));
   EXPECT_NE(said_by([] { say_everything(*run_logger("box")); }).find("thimble: an event\n"),
             std::string::npos);
 }
 
 TEST_F(LogTest, QuestionsAreShownUnchanged) {
-  for (const Talk talk : {Talk::kQuiet, Talk::kNormal, Talk::kTrace}) {
-    ASSERT_TRUE(begin_log({.talk = talk}));
+  for (const Verbosity verbosity : {Verbosity::kQuiet, Verbosity::kNormal, Verbosity::kTrace}) {
+    ASSERT_TRUE(begin_log({.verbosity = verbosity}));
     EXPECT_EQ(said_by([] { terminal().info("Press Enter to begin."); }), "Press Enter to begin.\n");
   }
 }
@@ -107,7 +107,7 @@ TEST_F(LogTest, FileHasTracesOnlyOnRequest) {
   said_by([] { say_everything(logger()); });
   ASSERT_EQ(default_log_file(), folder_ / "thimble" / "log" / "thimble.log");
   EXPECT_EQ(lines_of(default_log_file()).size(), 1 + 4u);
-  ASSERT_TRUE(begin_log({.talk = Talk::kTrace}));
+  ASSERT_TRUE(begin_log({.verbosity = Verbosity::kTrace}));
   said_by([] { say_everything(logger()); });
   EXPECT_EQ(lines_of(default_log_file()).size(), 1 + 4u + 1 + 5u);
 }
@@ -134,14 +134,14 @@ TEST_F(LogTest, ProgressStaysTheLastLine) {
 TEST_F(LogTest, FilesAreBoundedInSizeAndNumber) {
   ASSERT_TRUE(begin_log({}));
   const std::string words(1000, 'x');
-  constexpr std::size_t kLines = (LogFile::kFilesMost + 3) * LogFile::kBytesMost / 1000;
+  constexpr std::size_t kLines = (LogFile::kFilesMax + 3) * LogFile::kBytesMax / 1000;
   for (std::size_t i = 0; i < kLines; ++i) logger().info("{} {}", i, words);
   std::size_t files = 0;
   for (const auto& entry : fs::directory_iterator(default_log_file().parent_path())) {
     ++files;
-    EXPECT_LE(entry.file_size(), LogFile::kBytesMost) << entry.path();
+    EXPECT_LE(entry.file_size(), LogFile::kBytesMax) << entry.path();
   }
-  EXPECT_EQ(files, LogFile::kFilesMost);
+  EXPECT_EQ(files, LogFile::kFilesMax);
   EXPECT_NE(lines_of(default_log_file()).back().find(std::to_string(kLines - 1) + " x"),
             std::string::npos);
 }
@@ -153,9 +153,10 @@ TEST_F(LogTest, UnwritableFileIsReportedOnce) {
     logger().warn("one");
     logger().warn("two");
   });
-  const std::size_t told = said.find("thimble: The log ends, for " + default_log_file().string());
+  const std::size_t told =
+      said.find("thimble: Logging has stopped, because " + default_log_file().string());
   ASSERT_NE(told, std::string::npos) << said;
-  EXPECT_EQ(said.find("The log ends", told + 20), std::string::npos) << said;
+  EXPECT_EQ(said.find("Logging has stopped", told + 20), std::string::npos) << said;
   EXPECT_NE(said.find("thimble: one\n"), std::string::npos);
   EXPECT_NE(said.find("thimble: two\n"), std::string::npos);
 }
@@ -175,9 +176,10 @@ TEST_F(LogTest, FullDiskEndsOnlyTheLog) {
   });
   setrlimit(RLIMIT_FSIZE, &before);
   signal(SIGXFSZ, signal_before);
-  EXPECT_TRUE(std::regex_match(said, std::regex("thimble: The log ends, for " + file.string() +
-                                                " cannot be written \\(.*\\)\\. .*\n"
-                                                "thimble: the last\n")))
+  EXPECT_TRUE(
+      std::regex_match(said, std::regex("thimble: Logging has stopped, because " + file.string() +
+                                        " cannot be written \\(.*\\)\\. .*\n"
+                                        "thimble: the last\n")))
       << said;
   EXPECT_GT(lines_of(file).size(), 10u);
 }
@@ -185,7 +187,7 @@ TEST_F(LogTest, FullDiskEndsOnlyTheLog) {
 TEST_F(LogTest, FileNamedByTheUserMustBeWritable) {
   const auto begun = begin_log({.file = "/dev/full"});
   ASSERT_FALSE(begun);
-  EXPECT_EQ(begun.error().message.rfind("/dev/full: the log cannot be written there (", 0), 0u)
+  EXPECT_EQ(begun.error().message.rfind("/dev/full: cannot write the log there (", 0), 0u)
       << begun.error().message;
   EXPECT_FALSE(begin_log({.file = folder_}));
 }

@@ -144,7 +144,7 @@ TEST_F(NextRunTest, AnySpeedAndSingleStepsAreBitIdentical) {
   viewer->ask_pause(false);
   EXPECT_TRUE(viewer->ask_speed(2));
   EXPECT_TRUE(viewer->ask_speed(1000));
-  EXPECT_EQ(viewer->speed_asked(), kSpeedMost);
+  EXPECT_EQ(viewer->speed_asked(), kSpeedMax);
   servo.join();
   EXPECT_EQ(viewer->counters().missed, 0u);
   EXPECT_EQ(hash_of(*session), fresh);
@@ -220,7 +220,7 @@ TEST_F(NextRunTest, KeepsRequestsMadeDuringPreparation) {
   EXPECT_TRUE(next.ended());
   EXPECT_EQ(prepared, 2) << "prepared while the run continues";
   // The servo may continue for a while; requests to it would be lost now.
-  EXPECT_FALSE(viewer->heard());
+  EXPECT_FALSE(viewer->check_accepted());
   const auto late = viewer->ask_restart();
   ASSERT_FALSE(late);
   EXPECT_NE(late.error().message.find("try again"), std::string::npos) << late.error().message;
@@ -231,7 +231,7 @@ TEST_F(NextRunTest, KeepsRequestsMadeDuringPreparation) {
   ASSERT_TRUE(then->share(options_, session->shared()));
   next.begin(*then);
   const auto anew = view(*then);
-  EXPECT_TRUE(anew->heard());
+  EXPECT_TRUE(anew->check_accepted());
   EXPECT_TRUE(anew->loop_asked());
   EXPECT_EQ(anew->speed_asked(), 0.5);
   EXPECT_EQ(anew->notice(), "");
@@ -342,7 +342,7 @@ TEST_F(NextRunTest, NeverRestartsARealArm) {
   use.arm.serial = "on_the_desk";
   use.terms.arm.path = kSource / "app/arms/vintage_phantom.yaml";
   use.terms.arm.file = scene::load_arm(use.terms.arm.path).value();
-  use.terms.force_most = 1;
+  use.terms.max_force = 1;
   options_.real_arms["right"] = std::move(use);
   options_.several_arms = true;
   const auto session = Session::prepare(kSource / "app/scenes/two_hands.yaml", options_).value();

@@ -91,10 +91,10 @@ TEST_F(ReplayOptions, TurnedKnobRepeats) {
         ASSERT_NE(stiffness, knobs.end());
         // Changed, reversed during the change, and changed in contact.
         if (tick == 500) {
-          EXPECT_TRUE(run.turn_knob(stiffness->name, stiffness->most));
+          EXPECT_TRUE(run.turn_knob(stiffness->name, stiffness->max));
         }
         if (tick == 510 || tick == 2000) {
-          EXPECT_TRUE(run.turn_knob(stiffness->name, 0.5 * (stiffness->least + stiffness->most)));
+          EXPECT_TRUE(run.turn_knob(stiffness->name, 0.5 * (stiffness->min + stiffness->max)));
         }
       });
   const auto turned = std::count_if(recording.ticks.begin(), recording.ticks.end(),
@@ -108,7 +108,7 @@ TEST_F(ReplayOptions, KnobsTurnedAtOnceRepeat) {
       recorded("rubber", {.duration = 3, .knobs = true}, [](session::Session& run, int tick) {
         if (tick != 1000) return;
         for (const session::Knob& knob : run.knobs()) {
-          EXPECT_TRUE(run.turn_knob(knob.name, 0.5 * (knob.least + knob.most)));
+          EXPECT_TRUE(run.turn_knob(knob.name, 0.5 * (knob.min + knob.max)));
         }
       });
   const auto turned = std::count_if(recording.ticks.begin(), recording.ticks.end(),

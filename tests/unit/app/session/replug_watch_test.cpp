@@ -70,7 +70,7 @@ class ReplugWatchTest : public ::testing::Test {
         *device_, snapshot_,
         session::StartPose({.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}}, p_WHome),
         driver::FoundArm{},
-        session::ReplugWatch::Ways{
+        session::ReplugWatch::Access{
             .find = [this](const driver::FoundArm& arm) -> std::optional<driver::FoundArm> {
               return plugged_ ? std::optional(arm) : std::nullopt;
             },
@@ -82,15 +82,15 @@ class ReplugWatchTest : public ::testing::Test {
                   std::make_unique<OnWire>(second_),
                   std::make_unique<driver::hfab::HfabArm>(support::vintage_model())));
             }},
-        session::Terminal{.there = true,
-                          .key =
-                              [this] {
-                                const bool pressed = enter_;
-                                enter_ = false;
-                                return pressed ? session::EnterKey::kPressed
-                                               : session::EnterKey::kNothing;
-                              },
-                          .tell = [this](const std::string& line) { told_.push_back(line); }});
+        session::Terminal{
+            .there = true,
+            .key =
+                [this] {
+                  const bool pressed = enter_;
+                  enter_ = false;
+                  return pressed ? session::EnterKey::kPressed : session::EnterKey::kNothing;
+                },
+            .print_line = [this](const std::string& line) { told_.push_back(line); }});
   }
 
   /// Runs 100 ticks of a millisecond, then one check of the watch; `times` times.
@@ -110,7 +110,7 @@ class ReplugWatchTest : public ::testing::Test {
     const std::atomic<bool> stop{false};
     for (int i = 0; i < times; ++i) {
       driver::ServoLoop loop(*device_, clock_, driver::ForceLaw(push), driver::TickSink(show),
-                             {.outlive_faults = true});
+                             {.continue_after_faults = true});
       for (int tick = 0; tick < 100; ++tick) loop.tick(stop);
       watch_->step();
     }

@@ -115,7 +115,7 @@ TEST_F(RunLawTest, OnlyAChangeOfTheSceneIsRecorded) {
 
 TEST_F(RunLawTest, AllStagesTogetherDoNotUseTheHeap) {
   open_arm_in_fault();
-  session::HeldKnobs knobs(session_->scene(), objects_);
+  session::ProgramKnobs knobs(session_->scene(), objects_);
   session::RunLaw law(objects_, heavy_);
   law.scene().set_program_knobs(knobs);
   law.stop_in_fault(session_->device());

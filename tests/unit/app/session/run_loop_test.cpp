@@ -41,8 +41,8 @@ class RunLoopTest : public ::testing::Test {
    public:
     Witness(RunLoopTest& test, int number) : test_(test), number_(number) {}
     void take(const driver::TickRecord& record) noexcept override {
-      if (test_.told_.size() < test_.told_.capacity()) {
-        test_.told_.push_back({record.tick, number_, test_.messages_, record.f_sent_W[0]});
+      if (test_.records_.size() < test_.records_.capacity()) {
+        test_.records_.push_back({record.tick, number_, test_.messages_, record.f_sent_W[0]});
       }
     }
 
@@ -57,7 +57,7 @@ class RunLoopTest : public ::testing::Test {
   };
 
   void SetUp() override {
-    told_.reserve(100);
+    records_.reserve(100);
     auto opened =
         driver::Device::open(std::make_unique<driver::WireLink>(
                                  std::make_unique<HomeTransport>(messages_),
@@ -69,7 +69,7 @@ class RunLoopTest : public ::testing::Test {
   }
 
   int messages_ = 0;
-  std::vector<Told> told_;
+  std::vector<Told> records_;
   std::unique_ptr<driver::Device> device_;
   driver::VirtualClock clock_;
   std::atomic<bool> stop_{false};
@@ -94,13 +94,14 @@ TEST_F(RunLoopTest, ObserversRunInOrderAfterTheForce) {
             0);
   EXPECT_EQ(end, driver::ServoEnd::kDone);
   EXPECT_EQ(loop.end(), driver::ServoEnd::kDone);
-  ASSERT_EQ(told_.size(), 10u);
-  for (std::size_t i = 0; i < told_.size(); ++i) {
-    EXPECT_EQ(told_[i].tick, i / 2);
-    EXPECT_EQ(told_[i].observer, i % 2 == 0 ? 1 : 2);
-    EXPECT_EQ(told_[i].messages - before, static_cast<int>(i / 2 + 1))
+  ASSERT_EQ(records_.size(), 10u);
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    EXPECT_EQ(records_[i].tick, i / 2);
+    EXPECT_EQ(records_[i].observer, i % 2 == 0 ? 1 : 2);
+    EXPECT_EQ(records_[i].messages - before, static_cast<int>(i / 2 + 1))
         << "sent before the observers are called";
-    EXPECT_NEAR(told_[i].force, static_cast<double>(i / 2) / 60, 1e-12) << "the gate's soft start";
+    EXPECT_NEAR(records_[i].force, static_cast<double>(i / 2) / 60, 1e-12)
+        << "the gate's soft start";
   }
 }
 
@@ -114,9 +115,9 @@ TEST_F(RunLoopTest, DoesNotCallObserversAfterItsEnd) {
   stop_.store(true);
   EXPECT_EQ(loop.tick(stop_), driver::ServoEnd::kStopped);
   const int messages = messages_;
-  const std::size_t told = told_.size();
+  const std::size_t told = records_.size();
   EXPECT_EQ(loop.tick(stop_), driver::ServoEnd::kStopped);
-  EXPECT_EQ(told_.size(), told);
+  EXPECT_EQ(records_.size(), told);
   EXPECT_EQ(messages_, messages);
 }
 

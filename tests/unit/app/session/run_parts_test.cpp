@@ -25,7 +25,7 @@ TEST(ChooseRunArm, SimulatedArmNeedsNoBoardSearch) {
   const auto simulated = session::choose_run_arm("sim", {}, find);
   ASSERT_TRUE(simulated);
   EXPECT_FALSE(simulated->real);
-  EXPECT_TRUE(simulated->told.empty());
+  EXPECT_TRUE(simulated->warnings.empty());
   EXPECT_EQ(looks, 0);
 }
 
@@ -40,8 +40,8 @@ TEST(ChooseRunArm, ReportsSimulationAndUnknownNames) {
     const auto automatic = session::choose_run_arm("auto", {}, find);
     ASSERT_TRUE(automatic) << automatic.error().message;
     EXPECT_FALSE(automatic->real || automatic->terms);
-    ASSERT_EQ(automatic->told.size(), 1u);
-    EXPECT_EQ(automatic->told[0], "No arm is connected: the simulated arm is used.");
+    ASSERT_EQ(automatic->warnings.size(), 1u);
+    EXPECT_EQ(automatic->warnings[0], "No arm is connected: the simulated arm is used.");
     EXPECT_FALSE(session::choose_run_arm("S1", {}, find));
   }
 }
@@ -57,7 +57,7 @@ TEST(ChooseRunArms, GivesEachArmOfASceneItsOwnBoard) {
     other.serial = "S2";
     return driver::Result<std::vector<driver::FoundArm>>(std::vector<driver::FoundArm>{one, other});
   };
-  scene::RealArmRequest request;
+  scene::ArmPolicyRequest request;
   request.arm_file = std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/polhem.yaml";
   const auto two = session::choose_run_arms({"left=S1", "right=S2"}, request, find);
   ASSERT_TRUE(two) << two.error().message;
@@ -66,7 +66,7 @@ TEST(ChooseRunArms, GivesEachArmOfASceneItsOwnBoard) {
   ASSERT_EQ(two->several.size(), 2u);
   EXPECT_EQ(two->several.at("left")->arm.serial, "S1");
   EXPECT_EQ(two->several.at("right")->arm.serial, "S2");
-  EXPECT_EQ(two->told.at(0).find("The arm \"left\": "), 0u) << two->told.at(0);
+  EXPECT_EQ(two->warnings.at(0).find("The arm \"left\": "), 0u) << two->warnings.at(0);
   const auto mixed = session::choose_run_arms({"right=S2", "left=sim"}, request, find);
   ASSERT_TRUE(mixed) << mixed.error().message;
   EXPECT_TRUE(mixed->real());
@@ -109,11 +109,11 @@ TEST(HeatWarning, IsGivenOnceAtTheFirstTickAboveTheLimit) {
   session::HeatWarning warning;
   std::vector<std::string> given;
   for (const auto& tick : run) {
-    if (const std::string text = warning.look(tick); !text.empty()) given.push_back(text);
+    if (const std::string text = warning.check(tick); !text.empty()) given.push_back(text);
   }
   ASSERT_EQ(given.size(), 1u);
   EXPECT_EQ(given[0].find("A motor is at 80 % of its heat limit;"), 0u) << given[0];
-  EXPECT_TRUE(warning.look(run.back()).empty());
+  EXPECT_TRUE(warning.check(run.back()).empty());
 }
 
 TEST(ExitCode, DependsOnTheEndOfTheRun) {

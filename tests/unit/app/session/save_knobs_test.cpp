@@ -8,8 +8,8 @@
 #include <string>
 
 #include "files/edit_scene.h"
-#include "share/knob_order.h"
 #include "share/shared_run.h"
+#include "share/turn_knob.h"
 #include "support/scratch.h"
 #include "text_file.h"
 #include "thimble/session/session.h"

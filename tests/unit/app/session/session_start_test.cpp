@@ -48,7 +48,7 @@ class SessionStart : public ::testing::Test {
     options_.real_arm->serial = "S1";
     const std::filesystem::path file =
         std::filesystem::path(THIMBLE_SOURCE_DIR) / "app/arms/vintage_phantom.yaml";
-    options_.terms = scene::RealArmTerms{};
+    options_.terms = scene::ArmPolicy{};
     options_.terms->arm.path = file;
     options_.terms->arm.file = *scene::load_arm(file);
     options_.record = support::scratch_folder() / "start.h5";
@@ -136,7 +136,7 @@ TEST_F(SessionStart, AsksBeforeARealArmGetsForces) {
   session::Terminal terminal{
       .there = true,
       .key = [&] { return ++looks % 3 == 0 ? answer : session::EnterKey::kNothing; },
-      .tell = [&](const std::string& line) { told.push_back(line); },
+      .print_line = [&](const std::string& line) { told.push_back(line); },
       .ask = [&](const std::string& line) { told.push_back(line); }};
   EXPECT_TRUE(session::agree_to_forces(**prepared, false, terminal, stop));
   ASSERT_EQ(told.size(), 2u);
@@ -158,8 +158,9 @@ TEST_F(SessionStart, AsksBeforeARealArmGetsForces) {
 }
 
 TEST_F(SessionStart, EnablesForcesOnlyAtTheHomePose) {
-  const session::Terminal nobody{
-      .there = false, .key = [] { return session::EnterKey::kClosed; }, .tell = [](const auto&) {}};
+  const session::Terminal nobody{.there = false,
+                                 .key = [] { return session::EnterKey::kClosed; },
+                                 .print_line = [](const auto&) {}};
   const std::atomic<bool> stop{false};
   counts_ = {2000, 0, 0, 0, 0, 0};
   auto away = session::Session::prepare(scene(), options_);

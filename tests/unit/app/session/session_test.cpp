@@ -88,8 +88,8 @@ std::filesystem::path ball_with_start(double height) {
 TEST_F(SessionTest, ReportsATipThatStartsInside) {
   const auto inside = open(ball_with_start(0.01).string());
   ASSERT_NE(inside, nullptr);
-  ASSERT_EQ(inside->told().size(), 1U);
-  EXPECT_EQ(inside->told()[0],
+  ASSERT_EQ(inside->warnings().size(), 1U);
+  EXPECT_EQ(inside->warnings()[0],
             "The tip starts inside ball: its surface is felt only once the tip has been outside.");
   inside->run();
   const session::RunFigures figures = inside->figures();
@@ -112,7 +112,7 @@ TEST_F(SessionTest, RecordsThatATipStartsInside) {
 TEST_F(SessionTest, ReportsNoTipThatStartsOutside) {
   const auto outside = open(ball_with_start(0.05).string());
   ASSERT_NE(outside, nullptr);
-  EXPECT_TRUE(outside->told().empty());
+  EXPECT_TRUE(outside->warnings().empty());
   EXPECT_TRUE(outside->figures().inside_at_start.empty());
 }
 

@@ -35,7 +35,7 @@ void expect_left(ShapeTrace& trace, const render::TriangleMesh& first,
                  const render::TriangleMesh& left) {
   const auto steps = trace.steps({first}, 0);
   ASSERT_GT(steps.size(), 2U);
-  EXPECT_LE(trace.frames(), ShapeTrace::kFramesMost);
+  EXPECT_LE(trace.frames(), ShapeTrace::kFramesMax);
   render::TriangleMesh mesh = first;
   double before = -1;
   for (const ShapeStep& step : steps) {

@@ -23,9 +23,9 @@
 #include "hold_key.h"
 #include "mesh/contact_mesh.h"
 #include "share/arm_lines.h"
-#include "share/knob_order.h"
 #include "share/shared_reader.h"
 #include "share/shared_run.h"
+#include "share/turn_knob.h"
 #include "support/heap_guard.h"
 #include "support/long_form.h"
 #include "support/seed.h"
@@ -56,7 +56,7 @@ session::SharedScene small_scene() {
                            .vertex_count = 3,
                            .first_triangle = 1,
                            .triangle_count = 2,
-                           .splits_most = 2});
+                           .max_splits = 2});
   scene.objects[0].texture = "sandpaper";
   scene.objects[0].friction = "bristle, dahl";
   scene.field = {{{0, 0, 0.1}, {0, 0, -1}}, {{0, 0, 0.2}, {0, 0.5, 0}}};
@@ -235,14 +235,14 @@ TEST(Share, RequestsASpeedAndIgnoresInvalidOnes) {
   live.requests.speed.store(std::numeric_limits<double>::quiet_NaN());
   EXPECT_FALSE(pair.run->speed_wanted());
   EXPECT_EQ(pair.reader->speed_asked(), 1);
-  EXPECT_FALSE(pair.run->restart_order_after(0));
+  EXPECT_FALSE(pair.run->restart_request_after(0));
   ASSERT_TRUE(pair.reader->ask_restart("/a/b.yaml"));
-  const auto order = pair.run->restart_order_after(0);
+  const auto order = pair.run->restart_request_after(0);
   ASSERT_TRUE(order);
   EXPECT_EQ(order->scene, "/a/b.yaml");
-  EXPECT_FALSE(pair.run->restart_order_after(order->number));
+  EXPECT_FALSE(pair.run->restart_request_after(order->number));
   ASSERT_TRUE(pair.reader->ask_restart());
-  EXPECT_EQ(pair.run->restart_order_after(order->number)->scene, "");
+  EXPECT_EQ(pair.run->restart_request_after(order->number)->scene, "");
   pair.run->set_notice("line 3: \x1b wrong\nmore");
   EXPECT_EQ(pair.reader->notice(), "line 3: ? wrong\nmore");
 }
@@ -407,17 +407,17 @@ TEST(Share, PassesRequestsOfViewers) {
   pair.reader->ask_stop();
   EXPECT_TRUE(pair.run->stop_asked());
 
-  EXPECT_FALSE(pair.run->record_order_after(0));
+  EXPECT_FALSE(pair.run->record_request_after(0));
   ASSERT_TRUE(pair.reader->ask_record("touch.h5"));
-  auto order = pair.run->record_order_after(0);
+  auto order = pair.run->record_request_after(0);
   ASSERT_TRUE(order);
   EXPECT_TRUE(order->record);
   EXPECT_EQ(order->path, "touch.h5");
   ASSERT_TRUE(pair.reader->ask_record_stop());
-  order = pair.run->record_order_after(order->number);
+  order = pair.run->record_request_after(order->number);
   ASSERT_TRUE(order);
   EXPECT_FALSE(order->record);
-  EXPECT_FALSE(pair.run->record_order_after(order->number));
+  EXPECT_FALSE(pair.run->record_request_after(order->number));
 
   session::SharedHand hand;
   EXPECT_FALSE(pair.run->hand(hand)) << "no viewer has moved it";
@@ -489,8 +489,8 @@ TEST(Share, KeyOfAViewerThatDiesIsReleased) {
   const Pair pair = joined(small_scene());
   viewer_that_is_killed(pair, [](auto& viewer) { viewer.hold_key(); });
   session::ViewerKey key(0);
-  key.look(pair.run->key_held(), 0);
-  key.look(pair.run->key_held(), 1'000'000'000);
+  key.update(pair.run->key_held(), 0);
+  key.update(pair.run->key_held(), 1'000'000'000);
   EXPECT_LE(key.until_ns(), session::HeldKey::kLasts_ns);
 }
 
@@ -557,10 +557,10 @@ TEST(Share, RestartWorksAfterHalfWrittenOne) {
   scene.paced = scene.restarts = true;
   const Pair pair = joined(scene);
   ASSERT_TRUE(pair.reader->ask_restart("/first.yaml"));
-  ASSERT_TRUE(pair.run->restart_order_after(0));
+  ASSERT_TRUE(pair.run->restart_request_after(0));
   tear(requests_of(pair).restart);
   ASSERT_TRUE(pair.reader->ask_restart("/second.yaml"));
-  const auto order = pair.run->restart_order_after(1);
+  const auto order = pair.run->restart_request_after(1);
   ASSERT_TRUE(order) << "its number did not grow";
   EXPECT_EQ(order->scene, "/second.yaml");
 }
@@ -569,7 +569,7 @@ TEST(Share, HalfWrittenRecordingPathIsNoPath) {
   const Pair pair = joined(small_scene());
   ASSERT_TRUE(pair.reader->ask_record("touch.h5"));
   tear(requests_of(pair).record_path);
-  EXPECT_FALSE(pair.run->record_order_after(0));
+  EXPECT_FALSE(pair.run->record_request_after(0));
 }
 
 TEST(Share, PauseOfDeadViewerEnds) {
@@ -822,15 +822,15 @@ TEST(Share, RequestsToAFinishedRunAreRejected) {
   scene.paced = scene.restarts = true;
   const Pair pair = joined(scene);
   ASSERT_TRUE(pair.reader->ask_restart("/kept.yaml"));
-  EXPECT_TRUE(pair.reader->heard());
+  EXPECT_TRUE(pair.reader->check_accepted());
   pair.run->close();
-  EXPECT_EQ(pair.run->restart_order_after(0)->scene, "/kept.yaml") << "requested before";
-  for (const auto& answer : {pair.reader->heard(), pair.reader->ask_restart("/lost.yaml"),
+  EXPECT_EQ(pair.run->restart_request_after(0)->scene, "/kept.yaml") << "requested before";
+  for (const auto& answer : {pair.reader->check_accepted(), pair.reader->ask_restart("/lost.yaml"),
                              pair.reader->ask_loop(true), pair.reader->ask_speed(2)}) {
     ASSERT_FALSE(answer);
     EXPECT_NE(answer.error().message.find("try again"), std::string::npos);
   }
-  EXPECT_EQ(pair.run->restart_order_after(0)->scene, "/kept.yaml");
+  EXPECT_EQ(pair.run->restart_request_after(0)->scene, "/kept.yaml");
 }
 
 TEST(Share, ReportsAndRemovesAKilledRun) {
@@ -897,7 +897,7 @@ void read_all(session::SharedReader& reader) {
   }
   for (std::size_t i = 0; i < reader.scene().knobs.size(); ++i) {
     const double value = reader.knob(i);
-    EXPECT_TRUE(value >= reader.scene().knobs[i].least && value <= reader.scene().knobs[i].most);
+    EXPECT_TRUE(value >= reader.scene().knobs[i].min && value <= reader.scene().knobs[i].max);
   }
   static_cast<void>(reader.counters());
   static_cast<void>(reader.recording_path());

@@ -44,11 +44,11 @@ TEST(StartPose, OfEveryShippedArmIsAtItsHomePose) {
     EXPECT_TRUE(place.has_home()) << arm.name;
     const Eigen::Vector3d p_WHome =
         file.p_WB + file.R_WB * driver::make_arm(arm.kind, file.model)->pose({}).p_BT;
-    EXPECT_EQ(place.trouble(p_WHome, true), "") << arm.name;
-    EXPECT_EQ(place.trouble(p_WHome, false), "") << arm.name << " is parked outside of its box";
-    EXPECT_NE(place.trouble(p_WHome + Eigen::Vector3d(0, 0.021, 0), true), "") << arm.name;
+    EXPECT_EQ(place.problem(p_WHome, true), "") << arm.name;
+    EXPECT_EQ(place.problem(p_WHome, false), "") << arm.name << " is parked outside of its box";
+    EXPECT_NE(place.problem(p_WHome + Eigen::Vector3d(0, 0.021, 0), true), "") << arm.name;
     const Eigen::Vector3d p_WMiddle = 0.5 * (file.workspace.min_W + file.workspace.max_W);
-    EXPECT_EQ(place.trouble(p_WMiddle, false), "") << arm.name;
+    EXPECT_EQ(place.problem(p_WMiddle, false), "") << arm.name;
   }
   EXPECT_FALSE(session::StartPose::of(file_of("falcon"), ArmKind::kFalcon).has_home());
 }
@@ -56,19 +56,19 @@ TEST(StartPose, OfEveryShippedArmIsAtItsHomePose) {
 TEST(StartPose, ReportsDistancesFromHomeAndWorkspace) {
   const session::StartPose place({.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}},
                                  Eigen::Vector3d(0.05, 0, 0));
-  EXPECT_EQ(place.trouble({0.05, 0.0199, 0}, true), "");
-  const std::string far_off = place.trouble({0.05, 0.03, 0.04}, true);
+  EXPECT_EQ(place.problem({0.05, 0.0199, 0}, true), "");
+  const std::string far_off = place.problem({0.05, 0.03, 0.04}, true);
   EXPECT_TRUE(has(far_off, "50 mm away from its home pose")) << far_off;
   EXPECT_TRUE(has(far_off, "counters are wrong")) << far_off;
-  EXPECT_EQ(place.trouble({0.05, 0.03, 0.04}, false), "");
-  EXPECT_EQ(place.trouble({-0.119, 0, 0}, false), "");
-  const std::string outside = place.trouble({-0.13, 0, 0.14}, false);
+  EXPECT_EQ(place.problem({0.05, 0.03, 0.04}, false), "");
+  EXPECT_EQ(place.problem({-0.119, 0, 0}, false), "");
+  const std::string outside = place.problem({-0.13, 0, 0.14}, false);
   EXPECT_TRUE(has(outside, "50 mm outside of the workspace")) << outside;
 
   const session::StartPose homeless({.min_W = {-0.1, -0.1, -0.1}, .max_W = {0.1, 0.1, 0.1}},
                                     std::nullopt);
-  EXPECT_EQ(homeless.trouble({0.09, 0.09, 0.09}, true), "");
-  EXPECT_NE(homeless.trouble({0.2, 0, 0}, true), "");
+  EXPECT_EQ(homeless.problem({0.09, 0.09, 0.09}, true), "");
+  EXPECT_NE(homeless.problem({0.2, 0, 0}, true), "");
 }
 
 TEST(StartPose, RejectsPositionsThatAreNotFinite) {
@@ -77,8 +77,8 @@ TEST(StartPose, RejectsPositionsThatAreNotFinite) {
                                  Eigen::Vector3d(0, 0, 0));
   for (const Eigen::Vector3d& p_WT :
        {Eigen::Vector3d(nan, 0, 0), Eigen::Vector3d(0, nan, 0), Eigen::Vector3d(0, 0, HUGE_VAL)}) {
-    EXPECT_NE(place.trouble(p_WT, true), "");
-    EXPECT_NE(place.trouble(p_WT, false), "");
+    EXPECT_NE(place.problem(p_WT, true), "");
+    EXPECT_NE(place.problem(p_WT, false), "");
   }
 }
 
@@ -134,9 +134,10 @@ class WaitForStartPose : public ::testing::Test {
   std::function<session::EnterKey(int look)> user_ = [](int) {
     return session::EnterKey::kNothing;
   };
-  session::Terminal terminal_{.there = true,
-                              .key = [this] { return user_(++looks_); },
-                              .tell = [this](const std::string& line) { told_.push_back(line); }};
+  session::Terminal terminal_{
+      .there = true,
+      .key = [this] { return user_(++looks_); },
+      .print_line = [this](const std::string& line) { told_.push_back(line); }};
 };
 
 TEST_F(WaitForStartPose, ReturnsAtOnceIfTheTipIsThere) {

@@ -91,8 +91,8 @@ TEST_F(ViewerWatchTest, LogsAViewerThatDied) {
 
 TEST_F(ViewerWatchTest, ManyViewersFitAndMoreAreHarmless) {
   std::vector<std::unique_ptr<SharedReader>> viewers;
-  for (std::size_t i = 0; i < kViewersMost + 3; ++i) viewers.push_back(view());
-  EXPECT_EQ(run_->viewers().size(), kViewersMost);
+  for (std::size_t i = 0; i < kViewersMax + 3; ++i) viewers.push_back(view());
+  EXPECT_EQ(run_->viewers().size(), kViewersMax);
   viewers.clear();
   EXPECT_TRUE(run_->viewers().empty());
 }

@@ -49,7 +49,7 @@ TEST(RaisedEdge, ReturnsErrorOfFailedTrial) {
 TEST(RaisedEdge, FewWallsBelowItOfSimulatedArmAreUnstable) {
   scene::ArmFile arm = support::hidden_arm(18).file;
   arm.simulated.hand.tremor_amplitude = 0;
-  const Carried carried = carried_by(arm, loop_times(arm, 1000), 1000, 0);
+  const StabilityLimits carried = stability_limits(arm, loop_times(arm, 1000), 1000, 0);
   const double quiet = kQuietAtRest + kQuietSteps * carried.tip.encoder_step;
   WallTrial trial{.p_W = scene::points_of_workspace(arm, 1).front(),
                   .n_W = Eigen::Vector3d::UnitY(),

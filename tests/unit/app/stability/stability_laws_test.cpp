@@ -146,18 +146,18 @@ TEST(SampledWall, CableShiftsEdgeByTwoMassLaw) {
     const int ticks = 3000;
     for (int tick = 0; tick < ticks; ++tick) {
       force = -stiffness * rotor;
-      double most = 0;
+      double max = 0;
       for (int i = 0; i < per_tick; ++i) {
         const double cable = wall.cable_stiffness * (rotor - x) + wall.cable_damping * (rate - v);
         v += h * (cable - wall.viscous * v) / wall.mass;
         rate += h * (force - cable) / wall.rotor_mass;
         x += h * v;
         rotor += h * rate;
-        most = std::max(most, std::abs(rotor));
+        max = std::max(max, std::abs(rotor));
       }
-      if (tick >= ticks / 4 && tick < ticks / 2) early = std::max(early, most);
-      if (tick >= 3 * ticks / 4) late = std::max(late, most);
-      if (most > 1) return true;
+      if (tick >= ticks / 4 && tick < ticks / 2) early = std::max(early, max);
+      if (tick >= 3 * ticks / 4) late = std::max(late, max);
+      if (max > 1) return true;
     }
     return late > early;
   };

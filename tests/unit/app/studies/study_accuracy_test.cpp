@@ -149,11 +149,11 @@ TEST(StiffestWall, EqualsTableForDampersWithLowPass) {
 }
 
 // Returns the largest damping on which a coupling may count without adding speed in a bounce.
-double least_counted_on(double stiffness) {
+double max_counted_on(double stiffness) {
   double gives = 1, none = GuardedArm::kViscous / 2;
   while (gives > 1.02 * none) {
     const double middle = std::sqrt(gives * none);
-    double most = 0;
+    double max = 0;
     for (int phase = 0; phase < 20; ++phase) {
       GuardedWall wall({.counted_on = middle}, stiffness);
       LineMotion now{-0.2 * GuardedArm::kTick * (1 + phase / 20.0), 0.2};
@@ -161,9 +161,9 @@ double least_counted_on(double stiffness) {
         now = moved_by_held_force(now, GuardedArm::kMass, GuardedArm::kViscous, -wall.force(now.x),
                                   GuardedArm::kTick);
       }
-      most = std::max(most, -now.v / 0.2);
+      max = std::max(max, -now.v / 0.2);
     }
-    (most > 1 ? gives : none) = middle;
+    (max > 1 ? gives : none) = middle;
   }
   return none;
 }
@@ -290,7 +290,7 @@ TEST(StraightWalk, RoundABlockReturnsToItsStart) {
 TEST(VirtualCoupling, AddsNoSpeedUpToItsDesignLimit) {
   for (const double stiffness : {250.0, 1000.0, 4000.0, 1e6}) {
     // Counting on the arm's own damping adds no speed; the limit is less than twice as large.
-    const double counted_on = least_counted_on(stiffness);
+    const double counted_on = max_counted_on(stiffness);
     EXPECT_GE(counted_on, GuardedArm::kViscous) << stiffness;
     EXPECT_LE(counted_on, 2 * GuardedArm::kViscous) << stiffness;
   }
@@ -415,17 +415,17 @@ TEST(MeasuredAxis, FindsSlopeDefaultAndFeltLimit) {
 TEST(MeasuredAxis, RunsSubtractedWorkAsOftenAsThePoint) {
   AccuracyAxis axis;
   axis.name = "by_hand";
-  int with = 0, beside = 0;
+  int with = 0, baseline = 0;
   AccuracyLine line{.name = "a", .title = "method a"};
   line.points.push_back({.name = "1",
                          .knob = 1,
                          .error = [] { return 0.0; },
                          .prepare = [&] { return Stroke([&] { return 1.0 * ++with; }); },
-                         .beside = [&] { return Stroke([&] { return 1.0 * ++beside; }); }});
+                         .baseline = [&] { return Stroke([&] { return 1.0 * ++baseline; }); }});
   axis.lines.push_back(line);
   measure_axis(std::move(axis), {.rounds = 7, .count = false});
   EXPECT_EQ(with, 8);  // one more, to fill the caches
-  EXPECT_EQ(beside, 8);
+  EXPECT_EQ(baseline, 8);
 }
 
 TEST(RateBench, VerdictUsesLateTicksAndJitter) {

@@ -103,19 +103,19 @@ TEST(EnergyGiven, CountsOnlyWhatSpringsHeld) {
     passive.book(-5e-3, 4e-3);  // pressed in; a fifth is lost
     passive.book(4e-3, 0);      // and back
   }
-  EXPECT_EQ(passive.most(), 0);
+  EXPECT_EQ(passive.max(), 0);
   EnergyGiven active = passive;
   active.book(-5e-3, 4e-3);
   active.book(6e-3, 0);  // 2 mJ more than the spring stored
-  EXPECT_NEAR(active.most(), 2e-3, 1e-15);
+  EXPECT_NEAR(active.max(), 2e-3, 1e-15);
   for (int i = 0; i < 4; ++i) {  // and again before energy returns
     active.book(-4e-3, 4e-3);
     active.book(5e-3, 0);
   }
-  EXPECT_NEAR(active.most(), 6e-3, 1e-15);
+  EXPECT_NEAR(active.max(), 6e-3, 1e-15);
   active.book(-6e-3, 0);  // damping dissipates
   active.book(1e-3, 0);
-  EXPECT_NEAR(active.most(), 6e-3, 1e-15);
+  EXPECT_NEAR(active.max(), 6e-3, 1e-15);
 }
 
 TEST(EnergyGiven, IsBoundedByTheStagesAllowance) {
@@ -166,7 +166,7 @@ TEST(Trouble, EnergyStageDoesNotOscillate) {
     const TroubleFound found = run_seed(seed);
     EXPECT_FALSE(found.refused);
     EXPECT_FALSE(found.bad());
-    EXPECT_LE(found.limit_cycle, kLimitCycleMost) << std::hex << seed;
+    EXPECT_LE(found.limit_cycle, kLimitCycleMax) << std::hex << seed;
   }
 }
 
@@ -176,7 +176,7 @@ TEST(Trouble, PullOfADentDoesNotOscillate) {
                                    0x4ef4be767faa6f60u}) {  // 0.14 N
     const TroubleFound found = run_seed(seed);
     EXPECT_GT(found.contact, 0.2);
-    EXPECT_LE(found.limit_cycle, kLimitCycleMost) << std::hex << seed;
+    EXPECT_LE(found.limit_cycle, kLimitCycleMax) << std::hex << seed;
   }
 }
 
@@ -194,7 +194,7 @@ TEST(Trouble, GrooveFacetsAreReportedForTheNaiveTracker) {
 
 TEST(Trouble, WarningNamesTooShortTexture) {
   std::vector<std::string> warnings;
-  EXPECT_GT(run_seed(0x9e0ae1da2e824ea6, "", "", &warnings).limit_cycle, kLimitCycleMost);
+  EXPECT_GT(run_seed(0x9e0ae1da2e824ea6, "", "", &warnings).limit_cycle, kLimitCycleMax);
   EXPECT_TRUE(any_has(warnings, "texture"));
 }
 
@@ -202,7 +202,7 @@ TEST(Trouble, WarningNamesTooShortTexture) {
 // conservative.
 TEST(Trouble, LightBodyWithFrictionRests) {
   std::vector<std::string> warnings;
-  EXPECT_LE(run_seed(0x84aec02417858bab, "", "", &warnings).limit_cycle, kLimitCycleMost);
+  EXPECT_LE(run_seed(0x84aec02417858bab, "", "", &warnings).limit_cycle, kLimitCycleMax);
   EXPECT_TRUE(any_has(warnings, "such a light body"));
 }
 
@@ -297,8 +297,8 @@ TEST(WallMeasures, RestitutionFollowsTheLaw) {
   wall.stiffness = 1000;
   const Restitution found = throw_at_wall(*arm, wall, 50).value();
   EXPECT_NEAR(found.mean, stability::restitution(1000, 0.005, 0.075, 0.0005), 0.01);
-  EXPECT_LE(found.least, found.mean);
-  EXPECT_GE(found.most, found.mean);
+  EXPECT_LE(found.min, found.mean);
+  EXPECT_GE(found.max, found.mean);
 }
 
 TEST(WallMeasures, JitteredTicksKeepTheirMean) {

@@ -84,7 +84,7 @@ inline session::SharedScene live_scene() {
                            .vertex_count = 3,
                            .first_triangle = 1,
                            .triangle_count = 2,
-                           .splits_most = 2});
+                           .max_splits = 2});
   return scene;
 }
 

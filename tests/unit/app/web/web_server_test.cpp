@@ -302,7 +302,7 @@ TEST_F(WebServerTest, GarbageEndsOnlyItsConnection) {
   ASSERT_EQ(open(long_winded), 101U);
   ASSERT_EQ(open(rude), 101U);
   error_code failed;
-  long_winded.write(asio::buffer(std::string(100 * WebServer::kSaidMost, 'x')), failed);
+  long_winded.write(asio::buffer(std::string(100 * WebServer::kIncomingMax, 'x')), failed);
   // A frame with a stated length of 2^62 bytes.
   const std::string huge("\x82\xff\x40\0\0\0\0\0\0\0\1\2\3\4", 14);
   asio::write(rude.next_layer(), asio::buffer(huge), failed);

@@ -50,8 +50,8 @@ TEST(SteerRun, PausesStepsRestartsAndChangesKnobs) {
   EXPECT_EQ(steered.ask("turn clay: stiffness=250.5"), "");
   EXPECT_EQ(steered.run->knob_wanted(0), 250.5);
   EXPECT_EQ(steered.ask("restart"), "");
-  ASSERT_TRUE(steered.run->restart_order_after(0));
-  EXPECT_EQ(steered.run->restart_order_after(0)->scene, "") << "no page names a file";
+  ASSERT_TRUE(steered.run->restart_request_after(0));
+  EXPECT_EQ(steered.run->restart_request_after(0)->scene, "") << "no page names a file";
 }
 
 TEST(SteerRun, RejectsUnsupportedRequests) {
@@ -64,7 +64,7 @@ TEST(SteerRun, RejectsUnsupportedRequests) {
   }
   EXPECT_FALSE(steered.run->pause_asked());
   EXPECT_FALSE(steered.run->stop_asked());
-  EXPECT_FALSE(steered.run->restart_order_after(0));
+  EXPECT_FALSE(steered.run->restart_request_after(0));
   EXPECT_EQ(steered.run->steps_asked(), 0U);
   EXPECT_EQ(steered.run->knob_wanted(0), 300);
 
@@ -73,7 +73,7 @@ TEST(SteerRun, RejectsUnsupportedRequests) {
   const Steered desk(real);
   EXPECT_NE(desk.ask("restart").find("physical arm (omega3)"), std::string::npos);
   EXPECT_NE(desk.ask("step 1").find("physical arm (omega3)"), std::string::npos);
-  EXPECT_FALSE(desk.run->restart_order_after(0));
+  EXPECT_FALSE(desk.run->restart_request_after(0));
   EXPECT_EQ(desk.ask("pause"), "") << "a physical arm's run can be paused";
 
   steered.run->close();

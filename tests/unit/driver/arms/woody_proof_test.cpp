@@ -13,14 +13,14 @@ namespace {
 /// A board that sends a report in each frame of 1 ms, or none, and counts what is written to it.
 class Board final : public Transport {
  public:
-  using Says = std::function<std::optional<InputReport>(int frame)>;
-  Board(VirtualClock& clock, Says says) : clock_(clock), says_(std::move(says)) {}
+  using ReportSource = std::function<std::optional<InputReport>(int frame)>;
+  Board(VirtualClock& clock, ReportSource source) : clock_(clock), source_(std::move(source)) {}
 
   TransportRead read_latest(std::span<std::byte> buffer,
                             std::int64_t deadline_ns) noexcept override {
     if (lost) return {.status = TransportStatus::kLost};
     clock_.sleep_until_ns(std::min(deadline_ns, clock_.now_ns() + 1'000'000));
-    const auto report = says_(frame_++);
+    const auto report = source_(frame_++);
     if (!report) return {};
     const auto bytes = encode_input(*report);
     std::copy(bytes.begin(), bytes.end(), buffer.begin());
@@ -38,7 +38,7 @@ class Board final : public Transport {
 
  private:
   VirtualClock& clock_;
-  Says says_;
+  ReportSource source_;
   int frame_ = 0;
 };
 
@@ -46,9 +46,9 @@ InputReport numbered(int number) {
   return {.counts = {1, 2, 3}, .counter = static_cast<std::uint16_t>(number)};
 }
 
-std::string refusal(const Board::Says& says, std::size_t size = kReportSize) {
+std::string refusal(const Board::ReportSource& source, std::size_t size = kReportSize) {
   VirtualClock clock;
-  Board board(clock, says);
+  Board board(clock, source);
   board.size = size;
   const auto heard = listen_for_board(board, clock);
   EXPECT_EQ(board.written, 0);

@@ -199,7 +199,7 @@ TEST(HeatOfADevice, FiftyNewtonsFallToTheContinuousCurrent) {
     }
   }
   EXPECT_EQ(most, 3000) << "cold motors may use their full current";
-  EXPECT_NEAR(device.heat().heat_most(), 1, 0.01);
+  EXPECT_NEAR(device.heat().max_heat(), 1, 0.01);
   double warmest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     warmest = std::max(warmest, 1e-3 * std::abs(mA[i]) / kSettings.continuous_current[i]);

@@ -183,7 +183,7 @@ TEST(EnergyGuard, DampsExactlyTheDebt) {
     EXPECT_NEAR(gate.pass_guarded({0, 0, 0}, {1, 0, 0}, kPeriod, {}).f_T_W().x(), expected, 1e-12);
   }
   EXPECT_EQ(gate.counters().damped, 5u);
-  EXPECT_LT(gate.counters().energy_least, -0.9);
+  EXPECT_LT(gate.counters().min_energy, -0.9);
 }
 
 TEST(EnergyGuard, CreditIsBoundedByTheReservoir) {

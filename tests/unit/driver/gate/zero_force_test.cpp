@@ -53,7 +53,7 @@ class ZeroForce : public ::testing::Test {
     device_->write({.f_T_W = f_T_W, .touch = {}});
   }
 
-  bool told_zero() const {
+  bool arm_got_zero() const {
     return hfab::decode_output(wire_.to_arm.back())->current_mA == std::array<std::int16_t, 3>{};
   }
 
@@ -66,7 +66,7 @@ TEST_F(ZeroForce, IsResentAtOnceWhenRefused) {
   open();
   wire_.refusals = 1;
   device_->deactivate();
-  EXPECT_TRUE(told_zero());
+  EXPECT_TRUE(arm_got_zero());
   EXPECT_TRUE(device_->zero_assured());
   EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0));
 }
@@ -75,14 +75,14 @@ TEST_F(ZeroForce, IsReportedOnlyWhenAcknowledged) {
   open();
   wire_.refusals = 3;
   device_->deactivate();
-  EXPECT_FALSE(told_zero());
+  EXPECT_FALSE(arm_got_zero());
   EXPECT_FALSE(device_->zero_assured());
   EXPECT_EQ(device_->f_sent_W(), kPush);  // it still acts
   EXPECT_EQ(device_->stage(), DeviceStage::kIdle);
   tick(kPush);
   EXPECT_EQ(device_->f_sent_W(), kPush);
   tick(kPush);
-  EXPECT_TRUE(told_zero());
+  EXPECT_TRUE(arm_got_zero());
   EXPECT_TRUE(device_->zero_assured());
   EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0));
 }
@@ -108,7 +108,7 @@ TEST_F(ZeroForce, IsRepeatedAtTheEndOfALoopUntilTaken) {
   const std::int64_t begin_ns = clock.now_ns();
   // Two at once, then one in each of 30 ms.
   EXPECT_EQ(run_to_end(*device_, clock, wire_, 31), ServoEnd::kDone);
-  EXPECT_TRUE(told_zero());
+  EXPECT_TRUE(arm_got_zero());
   EXPECT_TRUE(device_->zero_assured());
   EXPECT_EQ(device_->fault(), Fault::kNone);
   EXPECT_EQ(clock.now_ns() - begin_ns, (2 + 30) * kPeriod_ns);
@@ -120,7 +120,7 @@ TEST_F(ZeroForce, IsRetriedUntilTheWatchdogTime) {
   clock.sleep_until_ns(now_ns_ + kPeriod_ns);
   const std::int64_t begin_ns = clock.now_ns();
   EXPECT_EQ(run_to_end(*device_, clock, wire_, kForGood), ServoEnd::kDone);
-  EXPECT_FALSE(told_zero());
+  EXPECT_FALSE(arm_got_zero());
   EXPECT_FALSE(device_->zero_assured());
   EXPECT_EQ(device_->fault(), Fault::kRefused);
   EXPECT_EQ(device_->f_sent_W(), kPush);
@@ -174,7 +174,7 @@ TEST_F(ZeroForce, IsRepeatedByTheDestructor) {
   open();
   wire_.refusals = 3;  // two at once and one in the next millisecond of real time
   device_.reset();
-  EXPECT_TRUE(told_zero());
+  EXPECT_TRUE(arm_got_zero());
 }
 
 TEST_F(ZeroForce, IsNotAssuredByALostWire) {
@@ -207,7 +207,7 @@ TEST_F(ZeroForce, IsNotAssuredAfterARefusedForce) {
   EXPECT_FALSE(device_->zero_assured());
   wire_.refusals = 0;
   device_->deactivate();
-  EXPECT_TRUE(told_zero());
+  EXPECT_TRUE(arm_got_zero());
   EXPECT_TRUE(device_->zero_assured());
 }
 
@@ -302,7 +302,7 @@ TEST_F(ZeroForce, FollowsABackwardClock) {
     for (int k = 0; k < 30; ++k) {
       tick(kPush);
       EXPECT_EQ(device_->fault(), Fault::kTimeNotMonotonic);
-      EXPECT_TRUE(told_zero());
+      EXPECT_TRUE(arm_got_zero());
       EXPECT_EQ(device_->f_sent_W(), Vector3d(0, 0, 0));
     }
     ASSERT_TRUE(device_->activate());

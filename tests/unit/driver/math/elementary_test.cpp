@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
 
 /// Equal including signs; all NaN are equal.
 void expect_same(double found, double wanted) {
@@ -70,10 +70,10 @@ TEST(Elementary, KeepsTheSignOfZeroAndTheSmallestNumbers) {
     expect_same(f(0.0), 0.0);
     expect_same(f(-0.0), -0.0);
   }
-  for (double (*f)(double) : {sin, tan, asin, expm1, tanh}) expect_same(f(-kLeast), -kLeast);
-  for (double (*f)(double) : {cos, exp, exp2}) expect_same(f(kLeast), 1);
-  expect_same(cbrt(-kLeast), -0x1p-358);
-  expect_same(hypot(kLeast, 0), kLeast);
+  for (double (*f)(double) : {sin, tan, asin, expm1, tanh}) expect_same(f(-kSmallest), -kSmallest);
+  for (double (*f)(double) : {cos, exp, exp2}) expect_same(f(kSmallest), 1);
+  expect_same(cbrt(-kSmallest), -0x1p-358);
+  expect_same(hypot(kSmallest, 0), kSmallest);
   expect_same(sin_cos(-0.0).sine, -0.0);
 }
 

@@ -28,7 +28,7 @@ class EchoStream final : public StreamTransport {
 
   std::int64_t delay_ns = 300'000;
   bool silent = false, gone = false, full = false;
-  int most_unanswered = 0;  // unanswered messages at the same time
+  int max_unanswered = 0;  // unanswered messages at the same time
   std::vector<std::string> heard;
 
  private:
@@ -51,7 +51,7 @@ class EchoStream final : public StreamTransport {
     if (full) return TransportStatus::kRefused;
     heard.emplace_back(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (!silent) answers_.push_back(clock_.now_ns() + delay_ns);
-    most_unanswered = std::max(most_unanswered, static_cast<int>(answers_.size()));
+    max_unanswered = std::max(max_unanswered, static_cast<int>(answers_.size()));
     return TransportStatus::kOk;
   }
 
@@ -88,7 +88,7 @@ TEST_F(StreamTransportTest, ReadsTheAnswerToThePreviousTick) {
     EXPECT_EQ(write(), TransportStatus::kOk);
     EXPECT_EQ(clock_.now_ns(), before_ns);  // no waiting if the answer has arrived
   }
-  EXPECT_EQ(wire_.most_unanswered, 1);
+  EXPECT_EQ(wire_.max_unanswered, 1);
   EXPECT_EQ(wire_.counters().unanswered, 0u);
 }
 
@@ -104,7 +104,7 @@ TEST_F(StreamTransportTest, WaitsForALateAnswer) {
     longest_ns = std::max(longest_ns, clock_.now_ns() - before_ns);
   }
   EXPECT_EQ(longest_ns, 300'000);  // only until the answer
-  EXPECT_EQ(wire_.most_unanswered, 1);
+  EXPECT_EQ(wire_.max_unanswered, 1);
   EXPECT_EQ(wire_.counters().unanswered, 0u);
 }
 

@@ -179,7 +179,7 @@ TEST_F(PoseArmTest, SpeedLimitCoversTheReportedSpeed) {
 }
 
 TEST_F(PoseArmTest, SpeedLimitHoldsIfTheArmReportsZeroSpeed) {
-  arm_.says_still = true;
+  arm_.reports_no_velocity = true;
   arm_.stiffness = arm_.damping = 0;
   open(settings());
   ticks(10, {0, 0, 0});

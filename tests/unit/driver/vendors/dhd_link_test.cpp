@@ -25,7 +25,7 @@ struct ForceDimension {
   static constexpr auto open_link = dhd::open_link;
   static void heal(Mock& mock) {
     mock.fails.clear();
-    mock.tells_nan = mock.late = false;
+    mock.reports_nan = mock.late = false;
   }
 };
 
@@ -102,7 +102,7 @@ TEST_F(DhdLinkTest, NamesEachFaultOfTheLibraryAndLatchesZeroForce) {
   const auto failing = [](const char* function) {
     return [function](Mock& mock) { mock.fails = function; };
   };
-  const auto nan = [](Mock& mock) { mock.tells_nan = true; };
+  const auto nan = [](Mock& mock) { mock.reports_nan = true; };
   const auto late = [](Mock& mock) { mock.late = true; };
   const auto trip = [](Mock& mock) { mock.tripped = true; };
   const FaultRow rows[] = {

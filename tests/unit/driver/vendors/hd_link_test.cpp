@@ -24,7 +24,7 @@ struct OpenHaptics {
   static constexpr auto open_link = hd::open_link;
   static void heal(Mock& mock) {
     mock.error = 0;
-    mock.tells_nan = mock.late = false;
+    mock.reports_nan = mock.late = false;
   }
 };
 
@@ -84,7 +84,7 @@ TEST_F(HdLinkTest, OpenErrorNamesTheReason) {
 
 TEST_F(HdLinkTest, NamesEachErrorOfTheLibraryAndLatchesZeroForce) {
   const auto error = [](unsigned code) { return [code](Mock& mock) { mock.error = code; }; };
-  const auto nan = [](Mock& mock) { mock.tells_nan = true; };
+  const auto nan = [](Mock& mock) { mock.reports_nan = true; };
   const auto late = [](Mock& mock) { mock.late = true; };
   const FaultRow rows[] = {
       {"library reports error: warm motors", error(0x0200), Fault::kRefused, 1},

@@ -70,7 +70,7 @@ double way_down(const std::array<Vector3d, 3>& p, const Vector3d& from, const Ve
 // the shortest side.
 double beside(BendablePolygon& dent, std::int32_t triangle, const Vector3d& w, BodyPatch& patch) {
   const ContactMesh& mesh = dent.mesh();
-  const Vector3d foot = point_at(mesh, triangle, w);
+  const Vector3d closest = point_at(mesh, triangle, w);
   const Vector3d n = mesh.cell(triangle).face.n;
   const Vector3d side = mesh.position(triangle, 1) - mesh.position(triangle, 0);
   const double radius =
@@ -84,7 +84,7 @@ double beside(BendablePolygon& dent, std::int32_t triangle, const Vector3d& w, B
   int count = 0;
   for (int i = 0; i < 24; ++i) {
     const double angle = 2 * std::numbers::pi * i / 24;
-    const Vector3d from = foot + radius * (std::cos(angle) * x + std::sin(angle) * y);
+    const Vector3d from = closest + radius * (std::cos(angle) * x + std::sin(angle) * y);
     double base = std::numeric_limits<double>::quiet_NaN();
     double drawn = base;
     for (std::size_t k = 0; k < patch.triangle_count; ++k) {
@@ -163,13 +163,13 @@ TEST(BendablePolygon, DoesNotJumpWhereTheCursorCrossesAnEdge) {
     const double depth = 1e-3;
     auto here = dent_in(mesh, quiet());
     auto there = dent_in(mesh, quiet());
-    const Vector3d foot = point_at(here.mesh(), t, w);
+    const Vector3d closest = point_at(here.mesh(), t, w);
     const std::int32_t behind = here.mesh().cell(t).neighbours[static_cast<std::size_t>(k)];
     // On the edge plane, where both sides measure the same depth.
     const Vector3d mean =
         (here.mesh().cell(t).face.n + here.mesh().cell(behind).face.n).normalized();
-    const Vector3d p_WT = foot - depth * mean;
-    const Vector3d w_behind = within_triangle(projected_weights(here.mesh(), behind, foot));
+    const Vector3d p_WT = closest - depth * mean;
+    const Vector3d w_behind = within_triangle(projected_weights(here.mesh(), behind, closest));
     for (int n = 0; n < 120; ++n) {
       here.touch(t, w, p_WT);
       there.touch(behind, w_behind, p_WT);
@@ -288,7 +288,7 @@ TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshes) {
         // Symplectic Euler and Verlet conserve a quantity other than the energy, and this quantity
         // varies strongly near the maximum step. Damping takes from it, so it falls in the long
         // run. The others never gain energy. Written so that NaN persists and fails.
-        const auto most_energy = [&dent](int ticks) {
+        const auto max_energy = [&dent](int ticks) {
           double most = 0;
           for (int i = 0; i < ticks; ++i) {
             dent.rest();
@@ -299,9 +299,9 @@ TEST(BendablePolygon, StaysBoundedOnCoarseSoftMeshes) {
         };
         const bool swings =
             scheme == SpringScheme::kSymplecticEuler || scheme == SpringScheme::kVerlet;
-        const double before = swings ? most_energy(200) : dent.motion().energy() * (1 + 1e-9);
-        if (swings) most_energy(4000);
-        EXPECT_TRUE(most_energy(200) <= before)
+        const double before = swings ? max_energy(200) : dent.motion().energy() * (1 + 1e-9);
+        if (swings) max_energy(4000);
+        EXPECT_TRUE(max_energy(200) <= before)
             << times << ", " << step << " s, " << name_of(scheme);
       }
     }
@@ -379,7 +379,7 @@ TEST(DentedTouch, PullReturnsNoMoreEnergyThanTheHandPutIn) {
     surface.dent = settings;
     auto touch = build_object_touch(support::icosphere(2, 0.05), {}, surface).value();
     support::Random random(3);
-    double given = 0, most_given = 0, longest = 0, taken = 0;
+    double given = 0, max_given = 0, longest = 0, taken = 0;
     int contacts = 0;
     const BodyPull& pull = dynamic_cast<const DentedTouch&>(*touch).pull();
     driver::DeviceState state;
@@ -396,7 +396,7 @@ TEST(DentedTouch, PullReturnsNoMoreEnergyThanTheHandPutIn) {
                                                   : 0;
       given += work - held;
       taken -= std::min(work, 0.0);
-      most_given = std::max(most_given, given);
+      max_given = std::max(max_given, given);
       longest = std::max(longest, std::abs(work));
       state.p_WT = p;
       state.v_WT = way / 1e-3;
@@ -410,13 +410,13 @@ TEST(DentedTouch, PullReturnsNoMoreEnergyThanTheHandPutIn) {
     EXPECT_GT(contacts, 50);
     EXPECT_GT(taken, 1e-3);
     // No contact returns more energy than it received, except for the move of one tick.
-    EXPECT_LE(most_given, longest);
+    EXPECT_LE(max_given, longest);
     // The account limits jumps, and this tremor moves the tip by 0.03 mm in each tick.
     EXPECT_LT(pull.limited(), 1200u);
     EXPECT_GT(pull.stored(), -1e-5);
     std::printf(
         "damping %.1f: %d contacts took %.1f mJ, gave at most %.4f mJ more than they took\n",
-        damping, contacts, 1e3 * taken, 1e3 * most_given);
+        damping, contacts, 1e3 * taken, 1e3 * max_given);
   }
 }
 

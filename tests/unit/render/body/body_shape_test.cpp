@@ -47,7 +47,7 @@ TriangleMesh mesh_now(const ObjectTouch& object, TriangleMesh mesh) {
 
 // Returns the minimum area of a triangle projected along its initial normal, relative to its
 // initial area.
-double least_seen_area(const TriangleMesh& first, const TriangleMesh& now) {
+double min_projected_area(const TriangleMesh& first, const TriangleMesh& now) {
   double least = 1;
   for (const auto& triangle : first.triangles) {
     const auto area = [&](const TriangleMesh& mesh) -> Vector3d {
@@ -153,7 +153,7 @@ TEST(HardCaseClayPress, KeepsTheSetBeyondYield) {
 
 // Random presses at all speeds and places, along any path between them.
 TEST(HardCaseClayPress, NeverTurnsATriangleOver) {
-  double least = 1, least_work = 1e9;
+  double least = 1, min_work = 1e9;
   std::uint64_t lost = 0;
   for (const auto tracker : {TrackerChoice::kEdgePlanes, TrackerChoice::kOffset}) {
     const TriangleMesh mesh = support::bumpy_sphere(4, 0.03, 0.1, 5);
@@ -193,10 +193,10 @@ TEST(HardCaseClayPress, NeverTurnsATriangleOver) {
       heat = object->shape()->clay()->dissipated();
     }
     const TriangleMesh now = mesh_now(*object, mesh);
-    EXPECT_GT(least_seen_area(mesh, now), 0.1);
+    EXPECT_GT(min_projected_area(mesh, now), 0.1);
     EXPECT_EQ(object->lost_contacts(), 0u);
-    least = std::min(least, least_seen_area(mesh, now));
-    least_work = std::min(least_work, work / heat);
+    least = std::min(least, min_projected_area(mesh, now));
+    min_work = std::min(min_work, work / heat);
     lost += object->lost_contacts();
     EXPECT_GT(felt, 10 * presses());
     // The work put in is the heat and the energy of the springs, plus the flat tracker's own error
@@ -206,7 +206,7 @@ TEST(HardCaseClayPress, NeverTurnsATriangleOver) {
   }
   const char* const kPresses = "ball of clay, 150 presses (long form: 1000), two trackers";
   record_hard_case(34, kPresses, "> least area seen from outside, of the first", least, 0.1, "1");
-  record_hard_case(34, kPresses, "> work put in over heat", least_work, 0.9, "1");
+  record_hard_case(34, kPresses, "> work put in over heat", min_work, 0.9, "1");
   record_hard_case(34, kPresses, "== contacts lost", static_cast<double>(lost), 0, "1");
 }
 
@@ -364,7 +364,7 @@ TEST(HardCaseSnapInHand, HandCausesNoSecondSnap) {
     deepest = std::max(deepest, (now.vertices[v] - sheet().vertices[v]).norm());
   }
   EXPECT_NEAR(deepest, 12e-3, 1e-6);
-  EXPECT_GT(least_seen_area(sheet(), now), 0.1);
+  EXPECT_GT(min_projected_area(sheet(), now), 0.1);
 }
 
 TEST(Snap, ComesBackFromAPressBelowTheThreshold) {
@@ -398,7 +398,7 @@ TEST(Shape, MovesFewVerticesPerTickWithoutAllocation) {
             0);
   EXPECT_GT(object->shape()->snap()->snaps(), 1);
   EXPECT_EQ(object->lost_contacts(), 0u);
-  EXPECT_GT(least_seen_area(mesh, mesh_now(*object, mesh)), 0.1);
+  EXPECT_GT(min_projected_area(mesh, mesh_now(*object, mesh)), 0.1);
 }
 
 TEST(Shape, RefusesOrSurvivesInvalidInput) {
@@ -455,7 +455,7 @@ TEST(Shape, RefusesOrSurvivesInvalidInput) {
       if (i % 11 == 0) state.v_WT.y() = kNaN;
       ASSERT_TRUE(object->update(state).f_T_W.allFinite());
     }
-    EXPECT_GT(least_seen_area(mesh, mesh_now(*object, mesh)), 0.1);
+    EXPECT_GT(min_projected_area(mesh, mesh_now(*object, mesh)), 0.1);
   }
 }
 

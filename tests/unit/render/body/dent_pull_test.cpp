@@ -14,7 +14,7 @@
 
 #include "body/dent/dented_touch.h"
 #include "dent_shapes.h"
-#include "mesh/triangle_foot.h"
+#include "mesh/triangle_place.h"
 #include "support/meshes/body_meshes.h"
 #include "thimble/render/build_object_touch.h"
 
@@ -214,7 +214,7 @@ double energy_at(Tip& tip, const DentedTouch& object, const Vector3d& p) {
   const ContactMesh& mesh = object.dent().mesh();
   const DentMotion& motion = object.dent().motion();
   const std::int32_t triangle = command.touch.feature;
-  const Vector3d weights = edge_plane_foot(mesh, triangle, p).weights;
+  const Vector3d weights = edge_plane_place(mesh, triangle, p).weights;
   double energy = motion.energy();
   for (std::size_t k = 0; k < 3; ++k) {
     const double w = weights[static_cast<Eigen::Index>(k)];

@@ -365,7 +365,7 @@ TEST(MovingTouch, ReportsItsPoseAndMovesItsMesh) {
   motion.v_W = {0.1, 0, 0};
   motion.omega_W = {0, 0, 1};
   auto object = moving(block(), motion, 500, 1);
-  EXPECT_FALSE(object->stands_still());
+  EXPECT_FALSE(object->is_static());
   for (int i = 0; i < 500; ++i) object->update({});
   const BodyPose pose = object->pose();
   EXPECT_NEAR(pose.p_WB[0], 0.05, 1e-12);

@@ -114,7 +114,7 @@ class Way {
 
 TEST(PagedContact, MatchesTheContactInMemory) {
   Hand hand(PagedContact(open({.frames = 24, .reach = 0.003, .horizon = 0.02})));
-  MemoryContact reference((PackedSurface(ball())));
+  InMemoryContact reference((PackedSurface(ball())));
   Way way(support::seed_of(1));
   int touching = 0;
   for (int i = 0; i < 20'000; ++i) {
@@ -237,7 +237,7 @@ TEST(PagedContact, ReturnsSlowlyAfterAnUnseenEntryIntoABulge) {
   for (const double share : {0.2, 0.8}) {
     // Hand checks that the depth never grows by more than the tip's motion plus 20 um per tick.
     Hand hand(PagedContact(open({.frames = 4, .reach = 0.003, .horizon = 0.01}, file)));
-    MemoryContact whole = MemoryContact::build(support::icosphere(1, kRadius)).value();
+    InMemoryContact whole = InMemoryContact::build(support::icosphere(1, kRadius)).value();
     support::move_tip(whole, 0.06 * middle.normalized());
     const double seen = triangles + share * coarse.rise();
     double height = 0.06;

@@ -46,12 +46,12 @@ TEST(ContactMesh, ComputedEdgePlanesEqualStoredOnes) {
     for (std::int32_t t = 0; t < kept->triangle_count(); ++t) {
       EXPECT_EQ(made->cell(t).face.n, kept->cell(t).face.n);
       EXPECT_EQ(made->cell(t).neighbours, kept->cell(t).neighbours);
-      EXPECT_EQ(measured->cell(t).hollow, kept->cell(t).hollow);
+      EXPECT_EQ(measured->cell(t).concave, kept->cell(t).concave);
       EXPECT_EQ(measured->cell(t).around, kept->cell(t).around);
       for (std::size_t k = 0; k < 3; ++k) {
         EXPECT_EQ(made->edge_plane(t, k).n, kept->edge_planes(t)[k].n);
         EXPECT_EQ(made->edge_plane(t, k).d, kept->edge_planes(t)[k].d);
-        EXPECT_EQ(made->hollow_edge(t, k), kept->hollow_edge(t, k));
+        EXPECT_EQ(made->concave_edge(t, k), kept->concave_edge(t, k));
       }
     }
   }

@@ -152,7 +152,7 @@ TEST(OrientMesh, RestoresShuffledMeshesAndReportsIt) {
     EXPECT_EQ(report.turned_triangles,
               static_cast<std::size_t>(std::count(turns.begin(), turns.end(), -1)));
     EXPECT_EQ(turns[static_cast<std::size_t>(report.first_turned)], -1);
-    EXPECT_EQ(report.mended_components, check_mesh(mixed).components);
+    EXPECT_EQ(report.repaired_components, check_mesh(mixed).components);
     EXPECT_EQ(report.one_sided_components, 0u);
     // After one pass nothing is left to do.
     const auto once = mixed.triangles;

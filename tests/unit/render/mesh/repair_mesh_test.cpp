@@ -259,9 +259,9 @@ TEST(HardCaseBrokenMesh, IsReportedAndRepaired) {
     const char* name;
     TriangleMesh mesh;
     bool refused;
-    const char* told;
+    const char* message;
   };
-  int told_of = 0, fallen = 0;
+  int reported = 0, fallen = 0;
   for (const Case& now :
        {Case{"T-junction", with_t_junction(good(), 0), true, "has a hole"},
         Case{"T-junction, 1 um apart", with_t_junction(good(), kCrack), true, "has a hole"},
@@ -271,19 +271,19 @@ TEST(HardCaseBrokenMesh, IsReportedAndRepaired) {
         Case{"flipped face", flipped, false, "1 triangle was reversed"}}) {
     const auto loaded = ContactMesh::build(now.mesh);
     EXPECT_EQ(!loaded.ok(), now.refused) << now.name;
-    const std::string told = loaded ? describe(loaded->orientation()) : loaded.error().message;
-    EXPECT_NE(told.find(now.told), std::string::npos) << now.name << ": " << told;
+    const std::string message = loaded ? describe(loaded->orientation()) : loaded.error().message;
+    EXPECT_NE(message.find(now.message), std::string::npos) << now.name << ": " << message;
 
     const RepairedMesh repaired = repair_mesh(now.mesh);
     EXPECT_FALSE(repaired.changes.empty()) << now.name;
     EXPECT_TRUE(check_mesh(repaired.mesh).touchable()) << now.name;
     const int through = fall_throughs(repaired.mesh);
     EXPECT_EQ(through, 0) << now.name;
-    told_of += told.find(now.told) != std::string::npos;
+    reported += message.find(now.message) != std::string::npos;
     fallen += through;
   }
   support::record_hard_case(24, "T-junctions, crack, doubled vertices and triangle, flipped face",
-                            "== faults reported on loading", told_of, 6, "1");
+                            "== faults reported on loading", reported, 6, "1");
   support::record_hard_case(24, "the same, repaired: tip pressed on it at random",
                             "== ticks fallen through or not finite", fallen, 0, "1");
 }

@@ -48,7 +48,7 @@ struct Tip {
     felt = touch->update(state);
     // Work of the force on the hand along this path, with the mean of both ends: exact for springs.
     given += 0.5 * (before + felt.f_T_W).dot(way);
-    most_given = std::max(most_given, given);
+    max_given = std::max(max_given, given);
     change = (felt.f_T_W - before).norm();
     begun = true;
     return felt;
@@ -63,7 +63,7 @@ struct Tip {
   std::unique_ptr<ModelTouch> touch;
   driver::DeviceState state;
   driver::ForceCommand felt;
-  double given = 0, most_given = 0, change = 0;
+  double given = 0, max_given = 0, change = 0;
   bool begun = false;
 };
 
@@ -154,14 +154,14 @@ TEST(ModelTouch, GivesNoEnergyForAnyModels) {
       }
       tip.to(0.002 * Vector3d(std::sin(a * t), std::sin(b * t), std::cos(a * t)));
     }
-    most = std::max(most, tip.most_given);
+    most = std::max(most, tip.max_given);
   }
   EXPECT_LE(most, 1e-6);
 }
 
 TEST(ModelTouch, ReturnsNoMoreEnergyThanItTook) {
   // In and out of surfaces at many speeds and phases: the work returned is at most the work put in.
-  double least_share = 1;
+  double min_share = 1;
   for (const auto feel :
        {SlowSurface::Feel::kEven, SlowSurface::Feel::kStiffening, SlowSurface::Feel::kSoftening}) {
     for (const double speed : {0.01, 0.05, 0.2, 1.0}) {
@@ -188,11 +188,11 @@ TEST(ModelTouch, ReturnsNoMoreEnergyThanItTook) {
         }
         // This test's sum has an error of one tick when a model arrives.
         EXPECT_LE(given, 0.003 * taken) << static_cast<int>(feel) << " " << speed << " " << phase;
-        least_share = std::min(least_share, 1 + given / taken);
+        min_share = std::min(min_share, 1 + given / taken);
       }
     }
   }
-  EXPECT_GT(least_share, 0.8);  // and lateness causes no additional loss
+  EXPECT_GT(min_share, 0.8);  // and lateness causes no additional loss
 }
 
 TEST(ModelTouch, SurfaceBehindTheTipBeginsAtTheTip) {
@@ -338,7 +338,7 @@ TEST(ModelTouch, RefusesInvalidSettings) {
   refused({}, "stiffness_max");
   refused({.stiffness_max = kNan}, "stiffness_max");
   refused({.stiffness_max = 1000, .jump = 0}, "jump");
-  refused({.stiffness_max = 1000, .jump_least = 0}, "jump_least");
+  refused({.stiffness_max = 1000, .min_jump = 0}, "min_jump");
   refused({.stiffness_max = 1000, .late = 1}, "late");
   refused({.stiffness_max = 1000, .hold = kNan}, "hold");
   refused({.stiffness_max = 1000, .fade = 0}, "fade");

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 using Corners = std::array<Vector3d, 3>;
-using Eight = std::array<Corners, EightTriangles::kMost>;
+using Eight = std::array<Corners, EightTriangles::kCapacity>;
 
 EightTriangles packed(const Eight& triangles) {
   EightTriangles eight;
@@ -137,8 +137,8 @@ TEST(EightTriangles, OverflowOmitsNoCrossedTriangle) {
 /// Closest point of one of eight triangles, and which of the others are kept.
 struct Nearest {
   Vector3d p;
-  std::array<double, EightTriangles::kMost> squared;
-  std::array<bool, EightTriangles::kMost> kept;
+  std::array<double, EightTriangles::kCapacity> squared;
+  std::array<bool, EightTriangles::kCapacity> kept;
 
   Nearest(const Eight& triangles, std::size_t known, const Vector3d& asked, double wrong,
           const Vector3d& seen)

@@ -48,7 +48,7 @@ class RandomHand {
 
 // 60 s in ten contacts, each from rest; the force of a tick is held until the next, as motors hold
 // it.
-double most_energy_to_the_hand(AnyStage& friction, double step) {
+double max_energy_to_the_hand(AnyStage& friction, double step) {
   support::Random random(11);
   Rubbing rubbing{friction};
   double most = -1;
@@ -77,7 +77,7 @@ TEST(HardCaseFrictionEnergy, RandomHandGainsNoEnergy) {
     if (name == "naive") continue;
     for (const double step : {0.0, 3e-5}) {
       const auto friction = make_friction(name, MapSettings({{"coefficient", 0.5}}));
-      const double work = most_energy_to_the_hand(*friction, step);
+      const double work = max_energy_to_the_hand(*friction, step);
       EXPECT_LE(work, 0) << name << " " << step;
       most = std::max(most, work);
     }
@@ -110,7 +110,7 @@ class LoadStiffenedLaw {
 
 // Work between two ticks by the mean of their forces: that of the law itself, without the error of
 // sampling (which the loop causes, and which limits the stiffness).
-double most_energy_on_any_way(AnyStage& friction, double size) {
+double max_energy_on_any_path(AnyStage& friction, double size) {
   support::Random random(5);
   Rubbing rubbing{friction};
   Vector3d p_WT(0, 0, 0);
@@ -135,13 +135,13 @@ TEST(FrictionWithASpring, GeneratesNoEnergyOnAnyPathUnderAnyLoad) {
   for (const std::string& name : with_spring) {
     for (const double size : {1e-6, 2e-5, 2e-4, 5e-3}) {
       const auto friction = make_friction(name, MapSettings({{"coefficient", 0.5}}));
-      EXPECT_LE(most_energy_on_any_way(*friction, size), 1e-12) << name << " " << size;
+      EXPECT_LE(max_energy_on_any_path(*friction, size), 1e-12) << name << " " << size;
     }
   }
 }
 
 // Out by 0.1 mm under a light load, back under a heavy one, repeatedly.
-double most_energy_by_pressing(AnyStage& friction) {
+double max_energy_by_pressing(AnyStage& friction) {
   Rubbing rubbing{friction};
   double work = 0, most = 0, x_before = 0, f_before = 0;
   for (int k = 0; k < 10'000; ++k) {
@@ -162,11 +162,11 @@ TEST(FrictionWithASpring, PressingHarderMakesNoEnergy) {
   EXPECT_GE(with_spring.size(), 6U);
   for (const std::string& name : with_spring) {
     const auto friction = make_friction(name, MapSettings({{"coefficient", 0.5}}));
-    EXPECT_LE(most_energy_by_pressing(*friction), 1e-12) << name;
+    EXPECT_LE(max_energy_by_pressing(*friction), 1e-12) << name;
   }
   // Negative control, and the reason why the bristle's spring is the same at every load.
   AnyStageOf<FrictionStage<LoadStiffenedLaw>> pumping({{}, support::phantom_context()});
-  EXPECT_GT(most_energy_by_pressing(pumping), 1e-4);
+  EXPECT_GT(max_energy_by_pressing(pumping), 1e-4);
 }
 
 TEST(TheBristle, RollingAroundABallGeneratesNoEnergy) {

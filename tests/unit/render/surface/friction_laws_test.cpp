@@ -91,7 +91,7 @@ TEST(HardCaseNaiveFriction, IsADamperBelowOneCountPerTick) {
 }
 
 TEST(HardCaseLugre, NeverGrows) {
-  double most_over = -1, most_ringing = 0;
+  double max_over = -1, max_ringing = 0;
   for (const double stiffness : {1e3, 1e5, 1e6}) {
     for (double speed = 1e-6; speed <= 2.01; speed *= 2) {
       auto lugre = stage<LugreLaw>({.coulomb = {.sliding = 0.5, .holding = 0.54},
@@ -106,17 +106,17 @@ TEST(HardCaseLugre, NeverGrows) {
         most = std::max(most, std::abs(f));
         if (k >= 1990) {
           EXPECT_NEAR(f, before, 1e-3 * std::abs(f)) << "no ringing";
-          most_ringing = std::max(most_ringing, std::abs(f / before - 1));
+          max_ringing = std::max(max_ringing, std::abs(f / before - 1));
         }
         before = f;
       }
       EXPECT_LE(most, 0.54 + 0.4 * speed + 1e-9) << stiffness << " " << speed;
-      most_over = std::max(most_over, most - (0.54 + 0.4 * speed));
+      max_over = std::max(max_over, most - (0.54 + 0.4 * speed));
     }
   }
   const char* const kSweep = "1 um/s to 2 m/s, 1e3 to 1e6 N/m, 2 s each";
-  record_hard_case(17, kSweep, "<= force beyond F_s + s2 v", most_over, 1e-9, "N");
-  record_hard_case(17, kSweep, "<= change per tick of the force at last", most_ringing, 1e-3, "1");
+  record_hard_case(17, kSweep, "<= force beyond F_s + s2 v", max_over, 1e-9, "N");
+  record_hard_case(17, kSweep, "<= change per tick of the force at last", max_ringing, 1e-3, "1");
 }
 
 TEST(HardCaseLugre, GuardEulerStepDiverges) {

@@ -15,7 +15,7 @@ void turn(Knob& knob, double value) noexcept {
 }
 
 LiveSetting setting(double least, double most, double value) {
-  return {.name = "gain", .unit = "1", .least = least, .most = most, .value = value};
+  return {.name = "gain", .unit = "1", .min = least, .max = most, .value = value};
 }
 
 TEST(LiveSettings, ChangeTheirStage) {
@@ -41,10 +41,10 @@ TEST(LiveSettings, BoundsIncludeTheScenesValues) {
   settings.add<turn>(knob, setting(0, 2, 3));
   settings.add<turn>(knob, setting(0, 2, -1));
   ASSERT_EQ(settings.list().size(), 2u);
-  EXPECT_EQ(settings.list()[0].least, 0);
-  EXPECT_EQ(settings.list()[0].most, 3);
-  EXPECT_EQ(settings.list()[1].least, -1);
-  EXPECT_EQ(settings.list()[1].most, 2);
+  EXPECT_EQ(settings.list()[0].min, 0);
+  EXPECT_EQ(settings.list()[0].max, 3);
+  EXPECT_EQ(settings.list()[1].min, -1);
+  EXPECT_EQ(settings.list()[1].max, 2);
 }
 
 TEST(LiveSettings, OmitFixedSettings) {
@@ -58,7 +58,7 @@ TEST(LiveSettings, OmitFixedSettings) {
   more.add<turn>(knob, setting(0, 1, 1));
   settings.take(more);
   ASSERT_EQ(settings.list().size(), 1u);
-  EXPECT_EQ(settings.list()[0].most, 1);
+  EXPECT_EQ(settings.list()[0].max, 1);
 }
 
 }  // namespace

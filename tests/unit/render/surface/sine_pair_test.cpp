@@ -16,7 +16,7 @@ namespace thimble::render {
 namespace {
 
 // Error of both polynomials, of the angle's own rounding and of the sums.
-constexpr double kWrongMost = 2e-16;
+constexpr double kErrorMax = 2e-16;
 
 TEST(SinePair, IsSineAndCosineOfBothAngles) {
   support::Random random(17);
@@ -32,8 +32,8 @@ TEST(SinePair, IsSineAndCosineOfBothAngles) {
       const double x = part[k] * (std::numbers::pi / 2);
       const double s = math::sin(x), c = math::cos(x);
       const auto turn = static_cast<long>(whole[k]) & 3;
-      ASSERT_NEAR(found.sine[k], turn == 0 ? s : turn == 1 ? c : turn == 2 ? -s : -c, kWrongMost);
-      ASSERT_NEAR(found.cosine[k], turn == 0 ? c : turn == 1 ? -s : turn == 2 ? -c : s, kWrongMost);
+      ASSERT_NEAR(found.sine[k], turn == 0 ? s : turn == 1 ? c : turn == 2 ? -s : -c, kErrorMax);
+      ASSERT_NEAR(found.cosine[k], turn == 0 ? c : turn == 1 ? -s : turn == 2 ? -c : s, kErrorMax);
     }
   }
 }

@@ -373,32 +373,33 @@ template <class Contact>
 void expect_places_in_a_hollow(const char* name, const Contact& made) {
   constexpr double kWall = 0.02, kStep = 1e-5, kAny = std::numeric_limits<double>::infinity();
   struct Case {
-    Vector3d p, foot;
+    Vector3d p, closest;
     Vector3d moves;  // 1 if the place moves with the tip along an axis
   };
   for (const Case& one : {Case{{0.023, 0.004, 0.003}, {kWall, kAny, kAny}, {kAny, kAny, kAny}},
                           Case{{0.023, 0.004, 0.022}, {kWall, 0.004, kWall}, {0, 1, 0}},
                           Case{{0.004, -0.0215, 0.0235}, {0.004, -kWall, kWall}, {1, 0, 0}},
                           Case{{-0.022, -0.023, 0.0225}, {-kWall, -kWall, kWall}, {0, 0, 0}}}) {
-    const auto foot_at = [&](const Vector3d& tip) {
+    const auto closest_at = [&](const Vector3d& tip) {
       Contact contact = made;
       constexpr int kIn = 300;
       for (int i = 0; i <= kIn; ++i) contact.update(at(one.p * i / kIn));
       EXPECT_TRUE(contact.update(at(tip)).touching) << name;
-      return foot_of(contact, tip);
+      return closest_point_of(contact, tip);
     };
-    const SurfaceFoot foot = foot_at(one.p);
+    const ClosestSurfacePoint closest = closest_at(one.p);
     for (int k = 0; k < 3; ++k) {
       const Vector3d axis = Vector3d::Unit(k);
-      if (one.foot[k] < kAny) {
-        EXPECT_NEAR(foot.p_M[k], one.foot[k], 1e-8) << name;
+      if (one.closest[k] < kAny) {
+        EXPECT_NEAR(closest.p_M[k], one.closest[k], 1e-8) << name;
       }
       const Vector3d moved =
-          (foot_at(one.p + kStep * axis).p_M - foot_at(one.p - kStep * axis).p_M) / (2 * kStep);
+          (closest_at(one.p + kStep * axis).p_M - closest_at(one.p - kStep * axis).p_M) /
+          (2 * kStep);
       if (one.moves[k] < kAny) {
         EXPECT_LT((moved - one.moves[k] * axis).norm(), 1e-5) << name;
       }
-      EXPECT_LT((foot.J_MT.col(k) - moved).norm(), 1e-5) << name << ", axis " << k;
+      EXPECT_LT((closest.J_MT.col(k) - moved).norm(), 1e-5) << name << ", axis " << k;
     }
   }
 }
@@ -413,13 +414,13 @@ TEST(TexturePlace, InAGrooveIsOnTheEdgeOrCorner) {
                                                       MeshContact(mesh, search), Phong(), normals));
   expect_places_in_a_hollow("offset", Blended<OffsetContact, Phong, CurvedDepth>(
                                           OffsetContact(mesh, search, normals), Phong(), normals));
-  expect_places_in_a_hollow("compact", MemoryContact(PackedSurface::build(*mesh).value()));
+  expect_places_in_a_hollow("compact", InMemoryContact(PackedSurface::build(*mesh).value()));
   expect_places_in_a_hollow("god_object", GodObjectContact(mesh, search));
 }
 
 TEST(TexturePlace, IsContinuousAndSteadyUnderARestingHand) {
-  FootFollower place;
-  SurfaceFoot found;
+  ClosestPointFollower place;
+  ClosestSurfacePoint found;
   found.p_M = {0, 0, 0};
   found.J_MT.setIdentity();
   EXPECT_EQ(place.follow({0, 0, -0.001}, 0.001, found).p_M, found.p_M);
@@ -429,7 +430,7 @@ TEST(TexturePlace, IsContinuousAndSteadyUnderARestingHand) {
   double p = 0;
   for (int i = 0; i < 100; ++i) {
     p += 1e-5;
-    const SurfaceFoot felt = place.follow({p, 0, -0.001}, 0.001, found);
+    const ClosestSurfacePoint felt = place.follow({p, 0, -0.001}, 0.001, found);
     EXPECT_LE((felt.p_M - before).norm(), 4e-5 + 1e-12);
     const bool arrived = felt.p_M == found.p_M;
     EXPECT_EQ(felt.J_MT.norm() > 0, arrived);

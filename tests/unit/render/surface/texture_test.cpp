@@ -164,8 +164,8 @@ TEST(Textures, PushWithTheGradientOfTheSpringsEnergy) {
   const EffectContext known = context();
   const Sines waves(two_waves(TextureForm::kConservative), known);
   const auto energy = [&](const Vector3d& p) {
-    const Vector3d foot(p.x(), p.y(), 0);
-    const double depth = -p.z() + waves.height().at(foot).height;
+    const Vector3d closest(p.x(), p.y(), 0);
+    const double depth = -p.z() + waves.height().at(closest).height;
     return depth > 0 ? kStiffness * depth * depth / 2 : 0;
   };
   for (int i = 0; i < 1000; ++i) {

@@ -70,7 +70,7 @@ TEST(ContactOnATorus, IsAccurateAtTenMillionTriangles) {
   const auto search = make_search(*mesh);
   const std::array<double, 3> worst{
       worst_on_torus(MeshContact(mesh, search), ticks, kJump),
-      worst_on_torus(MemoryContact(PackedSurface::build(*mesh).value()), ticks, kJump),
+      worst_on_torus(InMemoryContact(PackedSurface::build(*mesh).value()), ticks, kJump),
       worst_on_torus(GodObjectContact(mesh, search), ticks, 0.002)};
   std::printf("  %d triangles: off by %.3g, %.3g and %.3g um, triangles from the torus by %.3g\n",
               mesh->triangle_count(), 1e6 * worst[0], 1e6 * worst[1], 1e6 * worst[2], 1e6 * bulge);

@@ -52,13 +52,13 @@ void with_each_way(const TriangleMesh& shape, Work&& work) {
   const auto mesh = std::make_shared<const ContactMesh>(ContactMesh::build(shape).value());
   const auto search = make_search(*mesh);
   const auto bands = std::make_shared<const SmoothNormals>(
-      *mesh, kCreaseAngle, NormalWeights::kFitted, kHollowCreaseAngleOfBands);
+      *mesh, kCreaseAngle, NormalWeights::kFitted, kConcaveCreaseAngleOfBands);
   const auto normals = std::make_shared<const SmoothNormals>(*mesh);
   work(0, PathBounded(MeshContact(mesh, search)));
   work(1, PathBounded(Blended(MeshContact(mesh, search), SizedBand(), bands)));
   work(2, PathBounded(Blended<OffsetContact, Phong, CurvedDepth>(
               OffsetContact(mesh, search, normals), Phong(), normals)));
-  work(3, PathBounded(MemoryContact(PackedSurface::build(*mesh).value())));
+  work(3, PathBounded(InMemoryContact(PackedSurface::build(*mesh).value())));
   work(4, PathBounded(GodObjectContact(mesh, search)));
 }
 
@@ -189,7 +189,7 @@ void try_all(const std::string& name, const TriangleMesh& shape, int ticks,
   });
 }
 
-void tell(const std::array<Sum, kWays.size()>& sums) {
+void report(const std::array<Sum, kWays.size()>& sums) {
   for (std::size_t i = 0; i < kWays.size(); ++i) {
     const Sum& sum = sums[i];
     std::printf(
@@ -217,7 +217,7 @@ TEST(ContactTruth, NoContactIsLostInsideScannedMeshesAtAnyDepth) {
     if (!mesh) continue;
     try_all(file.filename().string(), scaled(*mesh), support::long_form() ? 10000 : 1000, sums);
   }
-  tell(sums);
+  report(sums);
   EXPECT_GT(sums[0].skin.ticks, 50000);
   if (!support::long_form()) {
     for (const std::size_t edge_planes : {0U, 1U}) EXPECT_LE(sums[edge_planes].skin.unexplained, 4);
@@ -233,7 +233,7 @@ TEST(ContactTruth, NoContactIsLostInsideRandomClosedMeshes) {
     for (Vector3d& vertex : mesh.vertices) vertex *= 1 - rough * random.uniform(0, 1);
     try_all("star " + std::to_string(i), mesh, 2000, sums);
   }
-  tell(sums);
+  report(sums);
 }
 
 // In 100,000 ticks 0.2 to 1 mm below the elephant's skin, edge planes differ from the closest point
@@ -248,7 +248,7 @@ TEST(ContactTruth, EdgePlanesMeasureTheNearestDistance) {
   const auto mesh = load_mesh(fs::path(THIMBLE_MESHES) / "elephant.off");
   ASSERT_TRUE(mesh);
   try_all("elephant.off", scaled(*mesh), 100'000, sums);
-  tell(sums);
+  report(sums);
   for (const std::size_t edge_planes : {0U, 1U}) {
     EXPECT_LE(sums[edge_planes].skin.off, 450);
     EXPECT_LE(sums[edge_planes].skin.same_side, 25);

@@ -180,10 +180,10 @@ TEST(EdgeBlending, SmoothProfileTurnsContinuouslyOverEdges) {
       const Vector3d edge = on.mesh.position(t, (k + 1) % 3) - on.mesh.position(t, k);
       const Vector3d side = on.mesh.position(t, (k + 2) % 3) - on.mesh.position(t, k);
       const double height = edge.cross(side).norm() / edge.norm();
-      const double foot = side.dot(edge) / edge.squaredNorm();
+      const double closest = side.dot(edge) / edge.squaredNorm();
       const double up = 1e-7 / height;
       // Perpendicular to the edge, by 0.1 um.
-      const Vector3d away = weights_of(k, 1 - along - up * (1 - foot), along - up * foot);
+      const Vector3d away = weights_of(k, 1 - along - up * (1 - closest), along - up * closest);
       for (const BlendProfile profile : {BlendProfile::kLinear, BlendProfile::kSmooth}) {
         for (const double width : {0.0005, 0.002, 0.02}) {
           const FixedBand shading{width, profile};

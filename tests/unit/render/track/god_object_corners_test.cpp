@@ -53,7 +53,7 @@ std::vector<Hollow> hollows() {
 }
 
 TEST(HardCaseSharpCorner, GodObjectMatchesTheQuadraticProgram) {
-  double worst = 0, most_hops = 0, moved_later = 0;
+  double worst = 0, max_hops = 0, moved_later = 0;
   int presses = 0;
   for (const Hollow& hollow : hollows()) {
     const double size = 0.4;
@@ -81,7 +81,7 @@ TEST(HardCaseSharpCorner, GodObjectMatchesTheQuadraticProgram) {
       ASSERT_EQ(contact.state().p_WP, once.p_WP) << hollow.name << " press " << i;
       ++presses;
       worst = std::max(worst, (once.p_WP - wanted).norm() / size);
-      most_hops = std::max<double>(most_hops, once.hops);
+      max_hops = std::max<double>(max_hops, once.hops);
       moved_later = std::max(moved_later, (contact.state().p_WP - once.p_WP).norm());
     }
     EXPECT_GT(corners, 3) << hollow.name;
@@ -94,8 +94,8 @@ TEST(HardCaseSharpCorner, GodObjectMatchesTheQuadraticProgram) {
                             worst, 1e-9, "1");
   support::record_hard_case(25, "the same", "== way of the proxy in ten more ticks", moved_later, 0,
                             "m");
-  EXPECT_LT(most_hops, kHopsMax);  // that many end a search that has not converged
-  support::record_hard_case(25, "the same", "< most hops in a tick", most_hops, kHopsMax, "1");
+  EXPECT_LT(max_hops, kHopsMax);  // that many end a search that has not converged
+  support::record_hard_case(25, "the same", "< most hops in a tick", max_hops, kHopsMax, "1");
 }
 
 TEST(GodObjectCorners, EqualTheQuadraticProgramAlongAPath) {

@@ -44,7 +44,7 @@ Vector3d any_weights(support::Random& random) {
   return w / w.sum();
 }
 
-TEST(OffsetFoot, RecoversThePlaceAndDepthOfATip) {
+TEST(OffsetTrianglePlace, RecoversThePlaceAndDepthOfATip) {
   support::Random random(1);
   for (const TriangleMesh& shape :
        {support::icosphere(2, 0.05), support::torus(0.05, 0.02, 40, 20),
@@ -57,16 +57,16 @@ TEST(OffsetFoot, RecoversThePlaceAndDepthOfATip) {
       const Vector3d weights = any_weights(random);
       const double depth = random.uniform(-0.001, 0.003);
       const double near = random.uniform(-0.001, 0.003);
-      const OffsetFoot foot =
-          find_offset_foot(mesh, normals, t, sunk(mesh, normals, t, weights, depth), near);
-      ASSERT_TRUE(foot.found);
-      ASSERT_NEAR(foot.depth, depth, 1e-13);
-      ASSERT_LT((foot.weights - weights).norm(), 1e-10);
+      const OffsetTrianglePlace closest = find_offset_triangle_place(
+          mesh, normals, t, sunk(mesh, normals, t, weights, depth), near);
+      ASSERT_TRUE(closest.found);
+      ASSERT_NEAR(closest.depth, depth, 1e-13);
+      ASSERT_LT((closest.weights - weights).norm(), 1e-10);
     }
   }
 }
 
-TEST(OffsetFoot, AgreesOnBothSidesOfASmoothEdge) {
+TEST(OffsetTrianglePlace, AgreesOnBothSidesOfASmoothEdge) {
   support::Random random(2);
   const ContactMesh mesh = prepared_mesh(support::bumpy_sphere(4, 0.05, 0.3, 6));
   const SmoothNormals normals(mesh);
@@ -78,8 +78,8 @@ TEST(OffsetFoot, AgreesOnBothSidesOfASmoothEdge) {
       weights /= weights.sum();
       const double depth = random.uniform(0, 0.003);
       const Vector3d p = sunk(mesh, normals, t, weights, depth);
-      const OffsetFoot there =
-          find_offset_foot(mesh, normals, mesh.cell(t).neighbours[k], p, 0.001);
+      const OffsetTrianglePlace there =
+          find_offset_triangle_place(mesh, normals, mesh.cell(t).neighbours[k], p, 0.001);
       ASSERT_TRUE(there.found);
       ASSERT_NEAR(there.depth, depth, 1e-13);
       ASSERT_NEAR(there.weights.minCoeff(), 0, 1e-10);
@@ -87,15 +87,15 @@ TEST(OffsetFoot, AgreesOnBothSidesOfASmoothEdge) {
   }
 }
 
-TEST(OffsetFoot, ReportsAnInvertedOffsetTriangle) {
+TEST(OffsetTrianglePlace, ReportsAnInvertedOffsetTriangle) {
   const ContactMesh mesh = prepared_mesh(support::icosphere(2, 0.05));
   const SmoothNormals normals(mesh);
-  EXPECT_TRUE(
-      find_offset_foot(mesh, normals, 0, sunk(mesh, normals, 0, {0.3, 0.3, 0.4}, 0.045), 0.044)
-          .found);
-  EXPECT_FALSE(
-      find_offset_foot(mesh, normals, 0, sunk(mesh, normals, 0, {0.3, 0.3, 0.4}, 0.06), 0.06)
-          .found);
+  EXPECT_TRUE(find_offset_triangle_place(mesh, normals, 0,
+                                         sunk(mesh, normals, 0, {0.3, 0.3, 0.4}, 0.045), 0.044)
+                  .found);
+  EXPECT_FALSE(find_offset_triangle_place(mesh, normals, 0,
+                                          sunk(mesh, normals, 0, {0.3, 0.3, 0.4}, 0.06), 0.06)
+                   .found);
 }
 
 // Returns the maximum turn of the normal over a triangle, offset by `depth`, per metre of the tip's
@@ -111,14 +111,14 @@ double turn_per_metre(const ContactMesh& mesh, const SmoothNormals& normals, std
   const Vector3d area = (y[1] - y[0]).cross(y[2] - y[0]);
   double longest = 0;
   double spread = 0;
-  double least_cosine = 1;
+  double min_cosine = 1;
   for (std::size_t k = 0; k < 3; ++k) {
     longest = std::max(longest, (y[(k + 1) % 3] - y[k]).norm());
     spread = std::max(spread, (n[(k + 1) % 3] - n[k]).norm());
-    least_cosine = std::min(least_cosine, n[k].dot(area.normalized()));
+    min_cosine = std::min(min_cosine, n[k].dot(area.normalized()));
   }
   const double shortest_sum = std::sqrt(std::max(1 - spread * spread, 0.0));
-  return 1.5 * spread / (area.norm() / longest * least_cosine * shortest_sum);
+  return 1.5 * spread / (area.norm() / longest * min_cosine * shortest_sum);
 }
 
 struct Smoothness {
@@ -288,7 +288,7 @@ TEST(HardCaseEdgeCrossing, OffsetTrackerDoesNotJump) {
 
 TEST(HardCaseFastStroke, TrackersMatchBruteForce) {
   // 2 m/s at 1 kHz over triangles of 0.3 mm.
-  std::uint16_t most_flat_hops = 0;
+  std::uint16_t max_flat_hops = 0;
   const TriangleMesh shape = support::icosphere(5, 0.008);
   OffsetContact contact = OffsetContact::build(shape).value();
   MeshContact edge_planes = MeshContact::build(shape).value();
@@ -318,8 +318,8 @@ TEST(HardCaseFastStroke, TrackersMatchBruteForce) {
     for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
       // The far side of the sphere, where cells extend through the middle, is skipped.
       if (!(mesh.cell(t).face.n.dot(p) > 0.5 * p.norm())) continue;
-      const OffsetFoot foot = find_offset_foot(mesh, normals, t, p, 0);
-      if (foot.found && foot.weights.minCoeff() > 1e-9) {
+      const OffsetTrianglePlace closest = find_offset_triangle_place(mesh, normals, t, p, 0);
+      if (closest.found && closest.weights.minCoeff() > 1e-9) {
         ++holding;
         ASSERT_EQ(t, state.triangle);
       }
@@ -333,13 +333,13 @@ TEST(HardCaseFastStroke, TrackersMatchBruteForce) {
     ASSERT_LE(holding, 1);
     ASSERT_TRUE(holding == 1 || contact.tracker().weights(p).minCoeff() < 1e-8);
     ASSERT_TRUE(flat_holds || !any_flat_holds);
-    most_flat_hops = std::max(most_flat_hops, flat.hops);
+    max_flat_hops = std::max(max_flat_hops, flat.hops);
   }
   EXPECT_LT(hops_max, kHopsMax / 2);
   support::record_hard_case(26, "offset tracker, 300 ticks (long form: 5000): all as brute force",
                             "< most hops in a tick", hops_max, kHopsMax, "1");
-  EXPECT_LT(most_flat_hops, kHopsMax);
-  support::record_hard_case(26, "edge planes, the same", "< most hops in a tick", most_flat_hops,
+  EXPECT_LT(max_flat_hops, kHopsMax);
+  support::record_hard_case(26, "edge planes, the same", "< most hops in a tick", max_flat_hops,
                             kHopsMax, "1");
 }
 

@@ -62,7 +62,7 @@ class ScriptedStore {
   const TreeSearch<PackedSurface>* search_;
   const Absence* absence_;
 };
-static_assert(PackedStore<ScriptedStore> && PackedStore<MemoryStore>);
+static_assert(PackedStore<ScriptedStore> && PackedStore<InMemoryStore>);
 
 struct PackedScene {
   explicit PackedScene(const TriangleMesh& mesh)
@@ -88,7 +88,7 @@ Vector3d on_stroke(double angle) {
 TEST(PackedContact, MatchesTheContactInMemory) {
   const TriangleMesh mesh = support::bumpy_sphere(3, 0.05, 0.2, 4);
   PackedScene scene(mesh);
-  MemoryContact reference = MemoryContact::build(mesh).value();
+  InMemoryContact reference = InMemoryContact::build(mesh).value();
   int touched = 0;
   for (int i = 0; i < 20000; ++i) {
     const double along = 0.004 * i;

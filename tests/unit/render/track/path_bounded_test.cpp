@@ -48,8 +48,8 @@ constexpr std::array<const char*, 4> kContacts{"edge_planes", "compact", "offset
 MeshContact edge_planes(const TriangleMesh& mesh) {
   return MeshContact::build(mesh).value();
 }
-MemoryContact compact(const TriangleMesh& mesh) {
-  return MemoryContact(PackedSurface::build(ContactMesh::build(mesh).value()).value());
+InMemoryContact compact(const TriangleMesh& mesh) {
+  return InMemoryContact(PackedSurface::build(ContactMesh::build(mesh).value()).value());
 }
 using Smooth = Blended<OffsetContact, Phong, CurvedDepth>;
 Smooth offset(const TriangleMesh& shape) {
@@ -267,7 +267,7 @@ TEST(PathBounded, IsBitIdenticalOnSmoothShapes) {
       ++ticks;
     }
     EXPECT_EQ(ticks, 20000u);
-    return contact.anchor().ticks_behind();
+    return contact.filter().ticks_behind();
   };
   const TriangleMesh ring = support::torus(0.05, 0.02, 96, 40);
   const TriangleMesh ball = support::icosphere(3, 0.05);
@@ -315,17 +315,17 @@ ContactState found(double depth, const Vector3d& n_W) {
 }
 
 TEST(PathBounded, ContactFoundDeepBeginsWithoutAForceStep) {
-  ProxyFilter anchor;
-  anchor.follow({0, 0, 0.001}, {});
+  ProxyFilter filter;
+  filter.follow({0, 0, 0.001}, {});
   const ContactState deep = found(0.01, {0, 0, 1});
-  EXPECT_FALSE(anchor.follow({0, 0, 0.0009}, deep));
-  EXPECT_LE(anchor.felt().depth, kBound * 1e-4);
-  EXPECT_EQ(anchor.felt().triangle, 7);
+  EXPECT_FALSE(filter.follow({0, 0, 0.0009}, deep));
+  EXPECT_LE(filter.felt().depth, kBound * 1e-4);
+  EXPECT_EQ(filter.felt().triangle, 7);
   // It throws no tip out: the force has only the energy that the hand put in.
   for (int i = 1; i < 20; ++i) {
-    EXPECT_FALSE(anchor.follow({0, 0, 0.0009 + 1e-5 * i}, deep));
+    EXPECT_FALSE(filter.follow({0, 0, 0.0009 + 1e-5 * i}, deep));
     // 2 % of 10 mm over 0.3 mm of path, in energy.
-    EXPECT_LT(anchor.felt().depth, 4e-4);
+    EXPECT_LT(filter.felt().depth, 4e-4);
   }
 }
 
@@ -355,16 +355,16 @@ TEST(PathBounded, FollowsASurfaceUnderARestingHand) {
 
 TEST(PathBounded, UnknownPathGivesNoContact) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  ProxyFilter anchor;
-  EXPECT_FALSE(anchor.follow({0, 0, 0}, found(1e-3, {0, 0, 1})));
-  EXPECT_EQ(anchor.felt().depth, 0);
-  anchor.follow(Vector3d::Constant(nan), {});
-  EXPECT_FALSE(anchor.follow({0, 0, 0}, found(1e-3, {0, 0, 1})));
-  EXPECT_EQ(anchor.felt().depth, 0);
-  EXPECT_FALSE(anchor.follow({0, 0, -1e-4}, found(nan, {0, 0, 1})));
-  EXPECT_EQ(anchor.felt().depth, 0);
-  EXPECT_FALSE(anchor.follow({0, 0, -2e-4}, found(1e-3, {nan, 0, 1})));
-  EXPECT_EQ(anchor.felt().depth, 0);
+  ProxyFilter filter;
+  EXPECT_FALSE(filter.follow({0, 0, 0}, found(1e-3, {0, 0, 1})));
+  EXPECT_EQ(filter.felt().depth, 0);
+  filter.follow(Vector3d::Constant(nan), {});
+  EXPECT_FALSE(filter.follow({0, 0, 0}, found(1e-3, {0, 0, 1})));
+  EXPECT_EQ(filter.felt().depth, 0);
+  EXPECT_FALSE(filter.follow({0, 0, -1e-4}, found(nan, {0, 0, 1})));
+  EXPECT_EQ(filter.felt().depth, 0);
+  EXPECT_FALSE(filter.follow({0, 0, -2e-4}, found(1e-3, {nan, 0, 1})));
+  EXPECT_EQ(filter.felt().depth, 0);
 }
 
 TEST(PathBounded, EnergyIsBoundedByTheHandsWorkAndTheGift) {
@@ -372,10 +372,10 @@ TEST(PathBounded, EnergyIsBoundedByTheHandsWorkAndTheGift) {
   // by the filtered proxy's steps, independent of the account inside.
   support::Random random(3);
   for (int run = 0; run < (support::long_form() ? 2000 : 200); ++run) {
-    ProxyFilter anchor;
+    ProxyFilter filter;
     Vector3d p(0, 0, 0), a(0, 0, 0), heading = random.direction();
     ContactState goal;
-    anchor.follow(p, goal);
+    filter.follow(p, goal);
     double given = 0, gift = 0;
     bool was_behind = false;
     const double wander = random.uniform(0.05, 1);
@@ -387,8 +387,8 @@ TEST(PathBounded, EnergyIsBoundedByTheHandsWorkAndTheGift) {
         const double depth = random.uniform(0.001, 0.02);
         goal = found(depth, random.direction());
       }
-      const bool reached = anchor.follow(p, goal);
-      const Vector3d next = reached ? Vector3d(p + goal.depth * goal.n_W) : anchor.felt().p_WP;
+      const bool reached = filter.follow(p, goal);
+      const Vector3d next = reached ? Vector3d(p + goal.depth * goal.n_W) : filter.felt().p_WP;
       EXPECT_LE((next - a).norm(), ProxyFilter::kPathRatio * moved * (1 + 1e-9) + 1e-12);
       if (!reached || was_behind) {
         given += 0.5 * ((next - p).squaredNorm() - (a - p).squaredNorm());
@@ -507,7 +507,7 @@ TEST(PathBounded, DoesNotAllocate) {
               }
             }),
             0);
-  EXPECT_GT(contact.anchor().ticks_behind(), 0u);
+  EXPECT_GT(contact.filter().ticks_behind(), 0u);
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ struct ArmFile {
   /// First moments of mass along links B and C of a serial arm, also compensated, kg m.
   Eigen::Vector2d carried_moments{0, 0};
   /// Largest compensation force over the workspace, N.
-  double carried_most = 0;
+  double max_carried_force = 0;
   /// Corner frequency of the velocity estimate, Hz.
   double velocity_corner_frequency = 0;
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the base in the world.

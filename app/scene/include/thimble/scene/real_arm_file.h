@@ -18,7 +18,7 @@ struct RealArmFile {
   ArmFile file;                ///< Contents, including the calibration of this arm.
   std::string why;             ///< Reason for the choice, such as "named by --arm".
   /// Warnings about limits tightened by a file that is not installed, one sentence each.
-  std::vector<std::string> told;
+  std::vector<std::string> warnings;
 };
 
 /// Options of the search for the arm file of a real arm.

@@ -14,7 +14,7 @@
 #include "thimble/driver/safety_gate.h"
 #include "thimble/driver/servo_loop.h"
 #include "thimble/render/page/paging_counters.h"
-#include "thimble/scene/real_arm_terms.h"
+#include "thimble/scene/arm_policy.h"
 #include "thimble/session/figure.h"
 #include "thimble/session/run_statistics.h"
 
@@ -30,7 +30,7 @@ struct RunFigures {
   scene::FeelCheckState feel_check = scene::FeelCheckState::kSimulated;
   bool virtual_time = true;                  ///< True if the run used virtual time.
   std::uint64_t seed = 0;                    ///< Seed of all random numbers in the simulation.
-  double rate_asked = 0;                     ///< Requested rate of the servo loop, Hz.
+  double requested_rate = 0;                 ///< Requested rate of the servo loop, Hz.
   double force_limit = 0;                    ///< Force limit of the safety gate, N.
   std::vector<std::string> inside_at_start;  ///< Names of the objects in which the tip started.
   std::size_t triangles = 0;  ///< Number of touchable triangles, in memory and on disk.
@@ -54,7 +54,7 @@ struct RunFigures {
                                  ///< then its maximum over the workspace.
   bool heat_known = false;  ///< True if the arm file gives the continuous currents of the motors.
   std::array<double, 3> heat{};  ///< Heat of the motors at the end; 1 is the limit of the winding.
-  double heat_most = 0;          ///< Largest heat of any motor during the run.
+  double max_heat = 0;           ///< Largest heat of any motor during the run.
   /// Number of ticks in which a force was reduced because of heat.
   std::uint64_t heat_lowered = 0;
   /// Real-time properties that the kernel granted to the servo thread.

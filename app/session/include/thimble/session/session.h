@@ -24,7 +24,7 @@
 #include "thimble/driver/tick_record.h"
 #include "thimble/driver/transport.h"
 #include "thimble/render/mesh/triangle_mesh.h"
-#include "thimble/scene/real_arm_terms.h"
+#include "thimble/scene/arm_policy.h"
 #include "thimble/session/recording.h"
 #include "thimble/session/run_figures.h"
 #include "thimble/session/tick_observer.h"
@@ -65,9 +65,9 @@ using OpenLink = std::function<driver::Result<std::unique_ptr<driver::ArmLink>>(
 
 /// Real arm to use instead of one of the simulated arms of a scene.
 struct RealArmUse {
-  driver::FoundArm arm;       ///< Board of the arm.
-  scene::RealArmTerms terms;  ///< Terms of use for the arm.
-  OpenLink open_link = {};    ///< Link factory to use instead of `scene::open_link`, if set.
+  driver::FoundArm arm;     ///< Board of the arm.
+  scene::ArmPolicy terms;   ///< Terms of use for the arm.
+  OpenLink open_link = {};  ///< Link factory to use instead of `scene::open_link`, if set.
 };
 
 /// Options of a session, in addition to the scene.
@@ -84,7 +84,7 @@ struct SessionOptions {
   std::filesystem::path arm_file = {};            ///< Arm file or name; replaces that of the scene.
   std::optional<driver::FoundArm> real_arm = {};  ///< Real arm to use instead of the simulated one.
   /// Terms of use for `real_arm`; required if it is set.
-  std::optional<scene::RealArmTerms> terms = {};
+  std::optional<scene::ArmPolicy> terms = {};
   /// Real arms of a scene with several arms, by name in the scene. Arms without an entry or without
   /// a value are simulated.
   std::map<std::string, std::optional<RealArmUse>> real_arms = {};
@@ -134,10 +134,10 @@ struct SessionOptions {
 
 /// A numeric setting of a scene's object that can be changed during a run.
 struct Knob {
-  std::string name;            ///< Name, such as "OBJECT: stiffness".
-  std::string unit;            ///< SI unit.
-  double least = 0, most = 0;  ///< Smallest and largest value.
-  double value = 0;            ///< Current value.
+  std::string name;         ///< Name, such as "OBJECT: stiffness".
+  std::string unit;         ///< SI unit.
+  double min = 0, max = 0;  ///< Smallest and largest value.
+  double value = 0;         ///< Current value.
 };
 
 /// A stop flag that is never set.
@@ -237,7 +237,7 @@ class THIMBLE_EXPORT Session {
   bool real_time() const noexcept;
   /// Returns warnings to show the user: mesh repairs, omissions and assumptions. For a real arm
   /// also how the limits named in the scene were applied.
-  const std::vector<std::string>& told() const noexcept;
+  const std::vector<std::string>& warnings() const noexcept;
 
   /// Returns the newest tick. Any thread may load it.
   const driver::Snapshot<driver::TickRecord>& newest(std::size_t arm = 0) const noexcept;

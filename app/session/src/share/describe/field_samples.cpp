@@ -14,13 +14,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kLooks =
+constexpr int kCoarseSamples =
     24;  // samples along each side of the workspace, to find where a field is felt
 constexpr double kFelt =
     0.15;  // fraction of the largest force; the grid covers the region above it [chosen]
 constexpr double kSamples = 350;  // about as many as a user can distinguish [chosen]
-constexpr int kSideMost = 16;     // 16^3 equals kFieldSamplesMost
-static_assert(kSideMost * kSideMost * kSideMost <= kFieldSamplesMost);
+constexpr int kSideMax = 16;      // 16^3 equals kFieldSamplesMax
+static_assert(kSideMax * kSideMax * kSideMax <= kFieldSamplesMax);
 
 /// Fields of a scene, built separately from those that are felt.
 class Fields {
@@ -66,20 +66,20 @@ std::vector<SharedScene::FieldSample> sample_fields(const scene::Scene& scene) {
   const Eigen::AlignedBox3d workspace(scene.arms.front().arm.workspace.min_W,
                                       scene.arms.front().arm.workspace.max_W);
   if (fields.empty() || workspace.isEmpty() || !workspace.sizes().allFinite()) return {};
-  const auto looks = sample(fields, workspace, Eigen::Array3i::Constant(kLooks));
-  double most = 0;
-  for (const auto& look : looks) most = std::max(most, look.f_W.norm());
-  if (!(most > 0)) return {};
+  const auto coarse = sample(fields, workspace, Eigen::Array3i::Constant(kCoarseSamples));
+  double max_force = 0;
+  for (const auto& point : coarse) max_force = std::max(max_force, point.f_W.norm());
+  if (!(max_force > 0)) return {};
   Eigen::AlignedBox3d felt;
-  const Vector3d half = 0.5 * workspace.sizes() / kLooks;
-  for (const auto& look : looks) {
-    if (look.f_W.norm() < kFelt * most) continue;
-    felt.extend(Vector3d(look.p_W - half));
-    felt.extend(Vector3d(look.p_W + half));
+  const Vector3d half = 0.5 * workspace.sizes() / kCoarseSamples;
+  for (const auto& point : coarse) {
+    if (point.f_W.norm() < kFelt * max_force) continue;
+    felt.extend(Vector3d(point.p_W - half));
+    felt.extend(Vector3d(point.p_W + half));
   }
   const double step = math::cbrt(felt.volume() / kSamples);
   const Eigen::Array3i counts =
-      (felt.sizes().array() / std::max(step, 1e-6)).round().max(1).min(kSideMost).cast<int>();
+      (felt.sizes().array() / std::max(step, 1e-6)).round().max(1).min(kSideMax).cast<int>();
   return sample(fields, felt, counts);
 }
 

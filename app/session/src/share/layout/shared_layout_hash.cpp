@@ -18,9 +18,9 @@ THIMBLE_LAYOUT(thimble::session::SharedHead, ready, layout, total_bytes, hash, p
                field, shaped, splits, ring)
 THIMBLE_LAYOUT(thimble::session::SharedObject, name, kind, colour, moves, dents, shaped, unused,
                first_vertex, vertex_count, first_triangle, triangle_count, first_shaped,
-               first_split, splits_most, crease_angle, texture, friction)
+               first_split, max_splits, crease_angle, texture, friction)
 THIMBLE_LAYOUT(thimble::session::SharedFieldSample, p_W, f_W)
-THIMBLE_LAYOUT(thimble::session::SharedKnob, name, unit, least, most, initial)
+THIMBLE_LAYOUT(thimble::session::SharedKnob, name, unit, min, max, initial)
 THIMBLE_LAYOUT(thimble::session::SharedSplit, ready, kept, lost, triangles)
 THIMBLE_LAYOUT(thimble::session::SharedTick, serial, record)
 THIMBLE_LAYOUT(thimble::session::SharedKnobState, wanted, now)
@@ -49,7 +49,7 @@ constexpr std::uint64_t of_all() noexcept {
         driver::layout_hash<SharedSplit>(), driver::layout_hash<SharedRingSlot>(),
         driver::layout_hash<RunState>(), driver::layout_hash<SharedKind>(),
         static_cast<std::uint64_t>(kTurnByte), static_cast<std::uint64_t>(kFirstViewerByte),
-        std::uint64_t{kPausedByNobody}}) {
+        std::uint64_t{kPausedWithoutPlace}}) {
     hash = driver::layout_detail::mix(hash, part);
   }
   return hash;

@@ -14,7 +14,7 @@ FileWatch::FileWatch(const std::vector<std::filesystem::path>& files) {
     File file;
     file.path = path;
     file.seen = stamp_of(path);
-    file.first = file.told = scene::text_of(path);
+    file.first = file.reported = scene::text_of(path);
     files_.push_back(std::move(file));
   }
 }
@@ -38,8 +38,8 @@ bool FileWatch::step() {
     if (!file.fresh || file.still < kSettled || now.bytes < 0) continue;
     file.fresh = false;
     std::string text = scene::text_of(file.path);
-    if (text == file.told) continue;  // written without a change
-    file.told = std::move(text);
+    if (text == file.reported) continue;  // written without a change
+    file.reported = std::move(text);
     changed = true;
   }
   return changed;
@@ -47,7 +47,7 @@ bool FileWatch::step() {
 
 bool FileWatch::as_at_first() const {
   return std::all_of(files_.begin(), files_.end(),
-                     [](const File& file) { return file.told == file.first; });
+                     [](const File& file) { return file.reported == file.first; });
 }
 
 }  // namespace thimble::session

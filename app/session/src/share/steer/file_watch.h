@@ -37,11 +37,11 @@ class FileWatch {
   };
   struct File {
     std::filesystem::path path;
-    std::string first;   // Initial contents.
-    std::string told;    // Contents at the last reported change.
-    Stamp seen;          // At the last check.
-    int still = 0;       // Number of checks since it changed.
-    bool fresh = false;  // True if it has changed since it was read.
+    std::string first;     // Initial contents.
+    std::string reported;  // Contents at the last reported change.
+    Stamp seen;            // At the last check.
+    int still = 0;         // Number of checks since it changed.
+    bool fresh = false;    // True if it has changed since it was read.
   };
   static Stamp stamp_of(const std::filesystem::path& path);
 

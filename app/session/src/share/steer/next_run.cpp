@@ -16,7 +16,7 @@ void NextRun::begin(Session& session) {
   if (session.shared() == nullptr || session.setup().any_real()) return;
   session_ = &session;
   scene_ = session.setup().scene_path();
-  last_order_ = 0;
+  last_request_ = 0;
   session.shared()->set_pace(speed_, loop_);
   if (pause_) session.shared()->begin_paused();
   pause_ = false;
@@ -43,10 +43,10 @@ bool NextRun::prepare(const std::filesystem::path& scene) {
 
 /// Prepares the run that a viewer has requested since the last check, if any. Returns whether it
 /// succeeded.
-bool NextRun::prepare_ordered() {
-  const auto order = session_->shared()->restart_order_after(last_order_);
+bool NextRun::prepare_requested() {
+  const auto order = session_->shared()->restart_request_after(last_request_);
   if (!order) return false;
-  last_order_ = order->number;
+  last_request_ = order->number;
   scene::logger().info("A viewer requests {}.", order->scene.empty() ? "a restart" : order->scene);
   return prepare(order->scene.empty() ? scene_ : std::filesystem::path(order->scene));
 }
@@ -62,7 +62,7 @@ bool NextRun::prepare_changed() {
   return prepare(scene_);
 }
 
-void NextRun::hear_pace() {
+void NextRun::update_pace() {
   loop_ = session_->shared()->loop_asked();
   speed_ = session_->shared()->speed_wanted().value_or(speed_);
 }
@@ -70,10 +70,10 @@ void NextRun::hear_pace() {
 void NextRun::step(bool stop) {
   if (stop) end_.store(true);
   if (session_ == nullptr || end_.load()) return;
-  hear_pace();
-  if (!prepare_ordered() && !prepare_changed()) return;
+  update_pace();
+  if (!prepare_requested() && !prepare_changed()) return;
   session_->shared()->close();
-  prepare_ordered();  // a request made during the preparation
+  prepare_requested();  // a request made during the preparation
   end_.store(true);
 }
 
@@ -81,15 +81,15 @@ std::unique_ptr<Session> NextRun::take(driver::ServoEnd end, bool stop) {
   if (stop || session_ == nullptr) return nullptr;
   SharedRun& shared = *session_->shared();
   shared.close();
-  hear_pace();
+  update_pace();
   if (shared.stop_asked()) return nullptr;
   // After a fault the run is not restarted, so that the user checks the cause first.
   const bool fault = end == driver::ServoEnd::kFault;
-  if (fault && shared.restart_order_after(last_order_)) {
+  if (fault && shared.restart_request_after(last_request_)) {
     shared.set_notice(
         "The run is not restarted because it ended with a fault; check the fault first.");
   }
-  if (!fault) prepare_ordered();
+  if (!fault) prepare_requested();
   pause_ = end == driver::ServoEnd::kDone && shared.pause_asked();
   if (!next_ && loop_ && end == driver::ServoEnd::kDone && !prepare(scene_)) return nullptr;
   session_ = nullptr;

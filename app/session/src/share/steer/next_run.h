@@ -52,9 +52,9 @@ class THIMBLE_EXPORT NextRun {
 
  private:
   bool prepare(const std::filesystem::path& scene);
-  bool prepare_ordered();
+  bool prepare_requested();
   bool prepare_changed();
-  void hear_pace();
+  void update_pace();
 
   Prepare prepare_;
   bool reload_;
@@ -63,7 +63,7 @@ class THIMBLE_EXPORT NextRun {
   Session* session_ = nullptr;  // Null: the run cannot be restarted.
   std::filesystem::path scene_;
   FileWatch files_;
-  std::uint64_t last_order_ = 0;
+  std::uint64_t last_request_ = 0;
   std::unique_ptr<Session> next_;
   bool pause_ = false;  // Pause requested of a run that has ended, to be applied to the next one.
   std::string notice_;  // Reason why the last request is not the next run; empty if it is.

@@ -15,7 +15,7 @@ std::string SharedReader::why_real() const {
          "start a run.";
 }
 
-driver::Result<void> SharedReader::heard() const {
+driver::Result<void> SharedReader::check_accepted() const {
   // Pairs with SharedRun::close: either the run sees the request, or this sees that it is closed.
   std::atomic_thread_fence(std::memory_order_seq_cst);
   if (live_->closed.load() != 1) return {};
@@ -46,30 +46,30 @@ std::string SharedReader::why_no_speed() const {
 
 driver::Result<void> SharedReader::ask_steps(std::uint64_t ticks) {
   if (std::string why = why_no_step(); !why.empty()) return driver::Error{why};
-  if (auto now = heard(); !now) return now;
+  if (auto now = check_accepted(); !now) return now;
   if (state() != RunState::kPaused) {
     return driver::Error{"Only a paused run can be single-stepped; pause it first."};
   }
-  live_->requests.steps.fetch_add(std::clamp<std::uint64_t>(ticks, 1, kStepsMost));
-  return heard();
+  live_->requests.steps.fetch_add(std::clamp<std::uint64_t>(ticks, 1, kStepsMax));
+  return check_accepted();
 }
 
 driver::Result<void> SharedReader::ask_speed(double speed) {
   if (std::string why = why_no_speed(); !why.empty()) return driver::Error{why};
-  if (auto now = heard(); !now) return now;
+  if (auto now = check_accepted(); !now) return now;
   if (std::isnan(speed)) return driver::Error{"The speed must be a number from 0.1 to 4."};
-  live_->requests.speed.store(std::clamp(speed, kSpeedLeast, kSpeedMost));
-  return heard();
+  live_->requests.speed.store(std::clamp(speed, kSpeedMin, kSpeedMax));
+  return check_accepted();
 }
 
 double SharedReader::speed_asked() const noexcept {
   const double speed = live_->requests.speed.load();
-  return speed >= kSpeedLeast && speed <= kSpeedMost ? speed : 1;
+  return speed >= kSpeedMin && speed <= kSpeedMax ? speed : 1;
 }
 
 driver::Result<void> SharedReader::ask_restart(const std::string& scene) {
   if (std::string why = why_no_restart(); !why.empty()) return driver::Error{why};
-  if (auto now = heard(); !now) return now;
+  if (auto now = check_accepted(); !now) return now;
   SharedRestart order;
   if (scene.size() >= order.scene.size()) {
     return driver::Error{"The path of the scene is too long; copy the file to a shorter path."};
@@ -80,14 +80,14 @@ driver::Result<void> SharedReader::ask_restart(const std::string& scene) {
   live_->requests.restart.store(order);
   live_->requests.restart_number.store(order.number);
   end_turn();
-  return heard();
+  return check_accepted();
 }
 
 driver::Result<void> SharedReader::ask_loop(bool loop) {
   if (std::string why = why_no_restart(); !why.empty()) return driver::Error{why};
-  if (auto now = heard(); !now) return now;
+  if (auto now = check_accepted(); !now) return now;
   live_->requests.loop.store(loop ? 1 : 0);
-  return heard();
+  return check_accepted();
 }
 
 }  // namespace thimble::session

@@ -93,8 +93,8 @@ class THIMBLE_EXPORT FaultyDevice final : public UsbDevice {
   static std::size_t index(FaultKind kind) noexcept { return static_cast<std::size_t>(kind); }
   const OpenOrder* active(bool to_host, std::optional<FaultKind> kind = {}) const noexcept;
   const OpenOrder* hit(bool to_host) noexcept;
-  void spoil(const FaultOrder& order, std::span<std::byte> packet, std::size_t& size,
-             const Kept& before) noexcept;
+  void corrupt(const FaultOrder& order, std::span<std::byte> packet, std::size_t& size,
+               const Kept& before) noexcept;
 
   UsbDevice& device_;
   std::mt19937_64 random_;

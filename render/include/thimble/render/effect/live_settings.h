@@ -20,10 +20,10 @@ struct ForceSensitivity {
 
 /// Setting of a force law that can be changed between two ticks. Its stage must outlive it.
 struct LiveSetting {
-  std::string name;            ///< Name in a scene with its group: "friction coefficient".
-  std::string unit;            ///< SI unit.
-  double least = 0, most = 0;  ///< Smallest and largest value.
-  double value = 0;            ///< Value in the scene.
+  std::string name;         ///< Name in a scene with its group: "friction coefficient".
+  std::string unit;         ///< SI unit.
+  double min = 0, max = 0;  ///< Smallest and largest value.
+  double value = 0;         ///< Value in the scene.
   /// Sensitivity of the force, which limits the speed of a change.
   ForceSensitivity sensitivity{};
   void* stage = nullptr;  ///< Stage that owns the setting.
@@ -46,10 +46,10 @@ class LiveSettings {
   template <auto Set, class Stage>
   void add(Stage& stage, LiveSetting setting) {
     static_assert(std::is_nothrow_invocable_v<decltype(Set), Stage&, double>);
-    setting.least = std::min(setting.least, setting.value);
-    setting.most = std::max(setting.most, setting.value);
+    setting.min = std::min(setting.min, setting.value);
+    setting.max = std::max(setting.max, setting.value);
     // Written so that NaN is omitted.
-    if (!(setting.least < setting.most)) return;
+    if (!(setting.min < setting.max)) return;
     if (!group_.empty()) setting.name = group_ + ' ' + setting.name;
     setting.stage = &stage;
     setting.set = [](void* self, double value) noexcept { Set(*static_cast<Stage*>(self), value); };

@@ -31,7 +31,7 @@ class THIMBLE_EXPORT MapSettings final : public SettingsReader {
       return;
     }
     // Written so that NaN is rejected.
-    if (!(given->second >= limits.least && given->second <= limits.most)) {
+    if (!(given->second >= limits.min && given->second <= limits.max)) {
       reject(key, "is outside its limits");
       return;
     }

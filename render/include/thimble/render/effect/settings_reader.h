@@ -15,8 +15,8 @@ namespace thimble::render {
 /// Allowed values of a numeric setting.
 struct NumberLimits {
   std::string_view unit;  ///< SI unit; empty for a plain number.
-  double least = 0;       ///< Smallest allowed value.
-  double most = 0;        ///< Largest allowed value.
+  double min = 0;         ///< Smallest allowed value.
+  double max = 0;         ///< Largest allowed value.
   /// True if the setting must be given; false: its current value is the default.
   bool required = false;
   bool whole = false;  ///< True if only whole numbers are allowed; limits of at most 2^53.

@@ -22,10 +22,10 @@ class THIMBLE_EXPORT AnyStage {
   /// See SurfaceStage. Real-time: safe.
   virtual void touch(const driver::DeviceState& state, SurfaceResponse& response) noexcept = 0;
   virtual void leave() noexcept = 0;
-  /// Returns whether the stage is a FootStage, which must be run by `touch_at`.
-  virtual bool needs_foot() const noexcept { return false; }
-  /// See FootStage; other stages run `touch`. Real-time: safe.
-  virtual void touch_at(const SurfaceFoot&, const driver::DeviceState& state,
+  /// Returns whether the stage is a ClosestPointStage, which must be run by `touch_at`.
+  virtual bool needs_closest_point() const noexcept { return false; }
+  /// See ClosestPointStage; other stages run `touch`. Real-time: safe.
+  virtual void touch_at(const ClosestSurfacePoint&, const driver::DeviceState& state,
                         SurfaceResponse& response) noexcept {
     touch(state, response);
   }
@@ -43,11 +43,11 @@ class AnyStageOf final : public AnyStage {
     stage_.touch(state, response);
   }
   void leave() noexcept override { stage_.leave(); }
-  bool needs_foot() const noexcept override { return FootStage<Stage>; }
-  void touch_at(const SurfaceFoot& foot, const driver::DeviceState& state,
+  bool needs_closest_point() const noexcept override { return ClosestPointStage<Stage>; }
+  void touch_at(const ClosestSurfacePoint& closest, const driver::DeviceState& state,
                 SurfaceResponse& response) noexcept override {
-    if constexpr (FootStage<Stage>) {
-      stage_.touch_at(foot, state, response);
+    if constexpr (ClosestPointStage<Stage>) {
+      stage_.touch_at(closest, state, response);
     } else {
       stage_.touch(state, response);
     }
@@ -79,26 +79,26 @@ class StageList {
     for (const auto& stage : stages_) stage->list_settings(settings);
   }
 
-  /// Returns whether any stage is a FootStage; if so, use a FootStageList.
-  bool needs_foot() const noexcept {
+  /// Returns whether any stage is a ClosestPointStage; if so, use a ClosestPointStageList.
+  bool needs_closest_point() const noexcept {
     return std::any_of(stages_.begin(), stages_.end(),
-                       [](const auto& stage) { return stage->needs_foot(); });
+                       [](const auto& stage) { return stage->needs_closest_point(); });
   }
 
  protected:
   std::vector<std::unique_ptr<AnyStage>> stages_;  ///< Stages in the order of execution.
 };
 
-/// StageList with textures: a FootStage whose closest point never jumps.
-class FootStageList : public StageList {
+/// StageList with textures: a ClosestPointStage whose closest point never jumps.
+class ClosestPointStageList : public StageList {
  public:
-  explicit FootStageList(StageList stages) : StageList(std::move(stages)) {}
+  explicit ClosestPointStageList(StageList stages) : StageList(std::move(stages)) {}
 
   /// Runs the stages at the given closest point, or behind it if it jumped. Real-time: safe.
-  void touch_at(const SurfaceFoot& found, const driver::DeviceState& state,
+  void touch_at(const ClosestSurfacePoint& found, const driver::DeviceState& state,
                 SurfaceResponse& response) noexcept {
-    const SurfaceFoot foot = place_.follow(state.p_WT, response.contact.depth, found);
-    for (const auto& stage : stages_) stage->touch_at(foot, state, response);
+    const ClosestSurfacePoint closest = place_.follow(state.p_WT, response.contact.depth, found);
+    for (const auto& stage : stages_) stage->touch_at(closest, state, response);
   }
   void leave() noexcept {
     place_.leave();
@@ -106,7 +106,7 @@ class FootStageList : public StageList {
   }
 
  private:
-  FootFollower place_;
+  ClosestPointFollower place_;
 };
 
 }  // namespace thimble::render

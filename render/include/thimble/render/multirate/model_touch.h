@@ -22,7 +22,7 @@ struct ModelTouchSettings {
   /// Largest change of the force per tick while it approaches a new model, as a fraction of the
   /// force. Half of the just noticeable difference is 3.5 % [PHYSICS 6], and the tip moves as well.
   double jump = 0.02;
-  double jump_least = 0.003;  ///< Smallest value of that change, for small forces, N.
+  double min_jump = 0.003;  ///< Smallest value of that change, for small forces, N.
   /// Age from which a model is reported as held, s: three periods of 60 Hz.
   double late = 0.05;
   double hold = 0.25;  ///< Age up to which a model is rendered unchanged, s.
@@ -84,7 +84,7 @@ class THIMBLE_EXPORT ModelTouch final : public ObjectTouch {
   driver::ForceCommand update(const driver::DeviceState& state) noexcept override;
   /// Returns false: only the surface near the tip is known.
   bool inside(const Eigen::Vector3d&) const noexcept override { return false; }
-  bool stands_still() const noexcept override { return false; }
+  bool is_static() const noexcept override { return false; }
 
   /// Returns the age of the rendered model; from any thread.
   ModelAge age() const noexcept { return age_.load(std::memory_order_relaxed); }

@@ -37,13 +37,13 @@ struct SpringDamper {
     settings.add<[](SpringDamper& spring, double k) noexcept { spring.stiffness = k; }>(
         *this, {.name = "stiffness",
                 .unit = "N/m",
-                .most = settings.stiffness_max(),
+                .max = settings.stiffness_max(),
                 .value = stiffness,
                 .sensitivity = {.per_depth = 1}});
     settings.add<[](SpringDamper& spring, double b) noexcept { spring.damping = b; }>(
         *this, {.name = "damping",
                 .unit = "N s/m",
-                .most = settings.damping_max(),
+                .max = settings.damping_max(),
                 .value = damping,
                 .sensitivity = {.per_speed = 1}});
   }

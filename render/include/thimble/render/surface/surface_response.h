@@ -32,7 +32,7 @@ concept SurfaceStage = requires(Stage stage, const driver::DeviceState& state,
 ///
 /// M is the material: the surface as given, in the frame of the mesh. On an undeformed surface a
 /// position in M equals that in W. All functions are Real-time: safe.
-struct SurfaceFoot {
+struct ClosestSurfacePoint {
   Eigen::Vector3d p_M{0, 0, 0};  ///< Position of the point, m.
   Eigen::Vector3d n_M{0, 0, 0};  ///< Outward unit normal at the point.
   /// Derivative of `p_M` with respect to the tip's position.
@@ -51,7 +51,7 @@ struct SurfaceFoot {
 
 /// Returns the closest point on the plane through the proxy: exact if the surface is flat.
 /// Real-time: safe.
-inline SurfaceFoot flat_foot(const ContactState& contact) noexcept {
+inline ClosestSurfacePoint flat_closest_point(const ContactState& contact) noexcept {
   return {.p_M = contact.p_WP,
           .n_M = contact.n_W,
           .J_MT = Eigen::Matrix3d::Identity() - contact.n_W * contact.n_W.transpose(),
@@ -62,20 +62,20 @@ inline SurfaceFoot flat_foot(const ContactState& contact) noexcept {
 /// stage provides none. Precondition: its last `update` was at `p_WT` (W, m) and touches.
 /// Real-time: safe.
 template <class Contact>
-SurfaceFoot foot_of(const Contact& contact, const Eigen::Vector3d& p_WT) noexcept {
-  if constexpr (requires { contact.foot(p_WT); }) {
-    return contact.foot(p_WT);
+ClosestSurfacePoint closest_point_of(const Contact& contact, const Eigen::Vector3d& p_WT) noexcept {
+  if constexpr (requires { contact.closest(p_WT); }) {
+    return contact.closest(p_WT);
   } else {
-    return flat_foot(contact.state());
+    return flat_closest_point(contact.state());
   }
 }
 
 /// SurfaceStage that depends on the position on the surface: a texture. ContactForceLaw computes
 /// the closest point for such stages only.
 template <class Stage>
-concept FootStage = requires(Stage stage, const SurfaceFoot& foot, const driver::DeviceState& state,
-                             SurfaceResponse& response) {
-  { stage.touch_at(foot, state, response) }
+concept ClosestPointStage = requires(Stage stage, const ClosestSurfacePoint& closest,
+                                     const driver::DeviceState& state, SurfaceResponse& response) {
+  { stage.touch_at(closest, state, response) }
   noexcept->std::same_as<void>;
 };
 
@@ -87,7 +87,7 @@ concept FootStage = requires(Stage stage, const SurfaceFoot& foot, const driver:
 /// surface, as the felt depth does (track/path_bounded.h). While it lags behind it does not depend
 /// on the tip's position, so its slope is 0 and there is no lateral force. All functions are
 /// Real-time: safe.
-class FootFollower {
+class ClosestPointFollower {
  public:
   /// Largest ratio of the path of the position to that of the tip, as ProxyFilter::kPathRatio.
   /// [chosen]
@@ -95,7 +95,8 @@ class FootFollower {
 
   /// Returns the position at which textures are evaluated, with the tip at `p_WT` (m), `depth` (m)
   /// below the surface, and the closest point `found`.
-  SurfaceFoot follow(const Eigen::Vector3d& p_WT, double depth, const SurfaceFoot& found) noexcept {
+  ClosestSurfacePoint follow(const Eigen::Vector3d& p_WT, double depth,
+                             const ClosestSurfacePoint& found) noexcept {
     const double reach =
         kPathRatio * ((p_WT - p_WT_).norm() + found.surface_path) + kRounding * depth;
     const Eigen::Vector3d behind = found.p_M - p_M_;

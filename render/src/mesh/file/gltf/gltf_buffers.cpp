@@ -252,9 +252,9 @@ driver::Result<void> GltfBuffers::read_view(const Json& part, std::size_t type, 
   return {};
 }
 
-driver::Result<void> GltfBuffers::put_sparse(const Json& sparse, std::size_t type,
-                                             std::size_t columns, bool normalized,
-                                             std::vector<double>& values) {
+driver::Result<void> GltfBuffers::apply_sparse(const Json& sparse, std::size_t type,
+                                               std::size_t columns, bool normalized,
+                                               std::vector<double>& values) {
   const auto count = json_index(sparse, "count");
   const Json* const indices = json_member(sparse, "indices");
   const Json* const replaced = json_member(sparse, "values");
@@ -315,7 +315,7 @@ driver::Result<GltfNumbers> GltfBuffers::read(std::size_t accessor, std::size_t 
     numbers.values.assign(*count * columns, 0.0);
   }
   if (const Json* const sparse = json_member(*found, "sparse")) {
-    if (auto put = put_sparse(*sparse, component, columns, scaled, numbers.values); !put) {
+    if (auto put = apply_sparse(*sparse, component, columns, scaled, numbers.values); !put) {
       return put.error();
     }
   }

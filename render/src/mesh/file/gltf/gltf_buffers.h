@@ -55,9 +55,9 @@ class GltfBuffers {
   driver::Result<void> read_view(const nlohmann::json& part, std::size_t type, std::size_t count,
                                  std::size_t columns, bool may_stride, bool normalized,
                                  std::vector<double>& values);
-  driver::Result<void> put_sparse(const nlohmann::json& sparse, std::size_t type,
-                                  std::size_t columns, bool normalized,
-                                  std::vector<double>& values);
+  driver::Result<void> apply_sparse(const nlohmann::json& sparse, std::size_t type,
+                                    std::size_t columns, bool normalized,
+                                    std::vector<double>& values);
 
   const nlohmann::json& gltf_;
   std::string_view chunk_;

@@ -42,7 +42,7 @@ constexpr std::array<std::string_view, 12> kKnownExtensions{kInstancing,
                                                             "KHR_animation_pointer"};
 
 // Limits of reading: a small file may name large files in its folder.
-constexpr driver::ApartLimits kGltfLimits{.seconds = 20, .bytes = std::size_t{4} << 30};
+constexpr driver::SandboxLimits kGltfLimits{.seconds = 20, .bytes = std::size_t{4} << 30};
 
 // Modes of primitives [glTF 2.0, 3.7.2.1].
 constexpr std::size_t kTriangles = 4, kStrip = 5, kFan = 6;
