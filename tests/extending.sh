@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Applies each addition of the guide's page app/guide/pages/extending.md to a copy of the tree, builds it, runs the
+# Applies each addition of the guide's pages app/guide/pages/extending*.md to a copy of the tree, builds it, runs the
 # commands below it, and checks that only the files changed that its section lists.
-#   tests/extending.sh [WORD...]    WORD: the last of a section's heading (arm, law, texture, key, study, command, tracker);
+#   tests/extending.sh [WORD...]    WORD: the last of a section's heading (arm, key, study, command, law, texture, tracker);
 #                                   by default all of them, on top of each other
 # THIMBLE_EXTENDING: the folder of the copy, build/extending by default. Builds of an earlier call are reused.
 set -euo pipefail
@@ -50,4 +50,4 @@ for word in "${words[@]}"; do
   fi
 done
 [ ${#failed[@]} = 0 ] || { echo "FAILED: ${failed[*]}" >&2; exit 1; }
-echo "${#words[@]} additions are as the page says."
+echo "${#words[@]} additions are as the pages say."

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads the guide's page of additions (app/guide/pages/extending.md): its blocks are tested.
+"""Reads the guide's pages of additions (app/guide/pages/extending*.md): their blocks are tested.
 
     extending.py SOURCE                      prints the words that select sections: the last of each heading
     extending.py SOURCE --copy TREE          makes TREE the same but for builds; a file that is the same already is not written
@@ -27,7 +27,7 @@ import subprocess
 import sys
 import tempfile
 
-PAGE = "app/guide/pages/extending.md"
+PAGES = ("app/guide/pages/extending.md", "app/guide/pages/extending_rendering.md")
 PLACE = re.compile(r"^(?:New file `(?P<new>[^`]+)`|In `(?P<path>[^`]+)`, (?P<where>after|before|instead of) (?P<text>`.+`)|Test):$")
 
 
@@ -36,10 +36,11 @@ class Wrong(Exception):
 
 
 class Section:
-    """One addition: its heading, the files that its table lists, its blocks."""
+    """One addition: its page and heading, the files that its table lists, its blocks."""
 
-    def __init__(self, title):
-        self.title, self.files, self.written, self.blocks, self.tests = title, [], [], [], []
+    def __init__(self, page, title):
+        self.page, self.title = page, title
+        self.files, self.written, self.blocks, self.tests = [], [], [], []
 
     @property
     def word(self):
@@ -69,15 +70,18 @@ class Section:
             lines[begin:end] = block["lines"]
             file.write_text("".join(lines))
 
-    @staticmethod
-    def place(block):
-        return f"{PAGE}:{block['line']}"
+    def place(self, block):
+        return f"{self.page}:{block['line']}"
 
 
-def read_page(source):
-    """Returns the sections of the page that have blocks."""
+def read_pages(source):
+    """Returns the sections of the pages that have blocks."""
+    return [section for page in PAGES for section in read_page(source, page)]
+
+
+def read_page(source, page):
     sections, section, place, inside = [], None, None, None
-    for number, line in enumerate((source / PAGE).read_text().splitlines(keepends=True), 1):
+    for number, line in enumerate((source / page).read_text().splitlines(keepends=True), 1):
         text = line.rstrip("\n")
         if inside is not None:
             if text == "```":
@@ -87,7 +91,7 @@ def read_page(source):
         elif text.startswith("```"):
             inside = []
             if place is None or section is None:
-                raise Wrong(f"{PAGE}:{number}: no sentence above says where this block goes")
+                raise Wrong(f"{page}:{number}: no sentence above says where this block goes")
             if text == "```" or text[3:].isalpha():
                 if place["kind"] == "test":
                     section.tests = inside
@@ -95,7 +99,7 @@ def read_page(source):
                     section.blocks.append({**place, "lines": inside, "line": number})
             place = None
         elif text.startswith("## "):
-            section = Section(text[3:])
+            section = Section(page, text[3:])
             sections.append(section)
         elif found := PLACE.match(text):
             if found["new"]:
@@ -116,7 +120,7 @@ def read_page(source):
 def choose(sections, word):
     chosen = [one for one in sections if one.word == word]
     if not chosen:
-        raise Wrong(f"{PAGE} has no section {word}; known: {' '.join(one.word for one in sections)}")
+        raise Wrong(f"app/guide/pages/extending*.md have no section {word}; known: {' '.join(one.word for one in sections)}")
     return chosen[0]
 
 
@@ -180,23 +184,23 @@ def check_list(source, section, faults):
     """Compares a section's table, and its row in the table at the top, with the files that it changes."""
     listed, changed = set(section.files), section.changed()
     if listed != changed:
-        faults.append(f"{PAGE}: {section.title}: the table must not list {' '.join(sorted(listed - changed)) or '-'}, "
+        faults.append(f"{section.page}: {section.title}: the table must not list {' '.join(sorted(listed - changed)) or '-'}, "
                       f"must list {' '.join(sorted(changed - listed)) or '-'}")
     if not section.tests:
-        faults.append(f'{PAGE}: {section.title}: no block "Test:"')
-    faults += [f"{PAGE}: {section.title}: there is no file {path}" for path in section.written if not (source / path).exists()]
+        faults.append(f'{section.page}: {section.title}: no block "Test:"')
+    faults += [f"{section.page}: {section.title}: there is no file {path}" for path in section.written if not (source / path).exists()]
     counts = (len(section.files), len(section.files) - len(section.written))
     title = section.title[0].lower() + section.title[1:]
-    row = re.search(rf"^\| \[{title}\].*?\| (\d+) \| (\d+) \|$", (source / PAGE).read_text(), re.M)
+    row = re.search(rf"^\| \[{title}\].*?\| (\d+) \| (\d+) \|$", (source / section.page).read_text(), re.M)
     if not row or (int(row[1]), int(row[2])) != counts:
-        faults.append(f"{PAGE}: {section.title}: the table at the top must say {counts[0]} and {counts[1]} files")
+        faults.append(f"{section.page}: {section.title}: the table at the top must say {counts[0]} and {counts[1]} files")
 
 
 def check(source, build, only):
     """Prints the faults and returns their number. `only`: compiles the sources of the section of this word; all if empty."""
-    faults, compiled, sections = [], [], read_page(source)
+    faults, compiled, sections = [], [], read_pages(source)
     if len(sections) < 7:
-        faults.append(f"{PAGE}: {len(sections)} sections; expected 7")
+        faults.append(f"{' '.join(PAGES)}: {len(sections)} sections; expected 7")
 
     def take(section, tree):
         for path in section.changed():
@@ -223,7 +227,7 @@ def check(source, build, only):
             for path in dict.fromkeys(sources):
                 ended = subprocess.run(["clang-format-14", "--dry-run", "--Werror", path], capture_output=True, text=True, cwd=tree)
                 if ended.returncode:
-                    faults.append(f"{PAGE}: {ended.stderr[:1500]}")
+                    faults.append(ended.stderr[:1500])
         if build and not (build / "compile_commands.json").exists():
             print(f"NOT TESTED: that the examples compile; {build} has no compile_commands.json.")
         elif build and not faults:
@@ -240,7 +244,7 @@ def check(source, build, only):
             with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as threads:
                 for path, said in zip(compiled, threads.map(lambda path: compiles(calls, build, tree, path), compiled)):
                     if said:
-                        faults.append(f"{PAGE}: {path} does not compile:\n{said}")
+                        faults.append(f"{path} does not compile:\n{said}")
     print("\n".join(f"FAILED: {fault}" for fault in faults) or
           f"{len(sections)} additions, {sum(len(one.blocks) for one in sections)} blocks; {len(compiled)} sources compile.")
     return len(faults)
@@ -248,7 +252,7 @@ def check(source, build, only):
 
 def main():
     source, mode = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2:3]
-    sections = read_page(source)
+    sections = read_pages(source)
     if not mode:
         print("\n".join(one.word for one in sections))
     elif mode == ["--copy"]:

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Writes the guide's page of guarantees from one table, and checks the coverage of each sentence.
+"""Writes the guide's pages of guarantees from one table, and checks the coverage of each sentence.
 
-    promises.py SOURCE BUILD           fails if a test covers less than its row promises, or the page is not current
-    promises.py SOURCE BUILD --write   checks the same, and writes app/guide/pages/guarantees.md
-    promises.py SOURCE BUILD --page    writes it without running tests; needs the program only
+    promises.py SOURCE BUILD           fails if a test covers less than its row promises, or a page is not current
+    promises.py SOURCE BUILD --write   checks the same, and writes the pages
+    promises.py SOURCE BUILD --page    writes them without running tests; needs the program only
 
-The table is app/guide/guarantees.list. For each row with `covers`, the items that its tests recorded with
+The table is app/guide/guarantees.list; the line `page:` below a title names the file in app/guide/pages. For each row with `covers`, the items that its tests recorded with
 `support::Covered` are compared with all items: scenes and arms in app/, trackers in `thimble help scene tracker`. A sentence with
 "every", "each", "all" or "any" of these must have `covers`.
 """
@@ -17,7 +17,7 @@ import subprocess
 import sys
 import tempfile
 
-PAGE = "app/guide/pages/guarantees.md"
+PAGES = "app/guide/pages"
 TABLE = "app/guide/guarantees.list"
 KINDS = {"scene": "scenes", "tracker": "trackers", "arm": "arms"}
 WIRE = ("hfab_14_byte", "woody_8_byte", "text_lines", "falcon_packet")
@@ -32,10 +32,14 @@ fail.count = 0
 
 
 def read_table(path):
-    """Returns (heading lines, [(section title, [row])]); a row has says, tests, covers, line."""
-    head, sections, row = [], [], None
+    """Returns [(file name, heading lines, [(section title, [row])])]; a row has says, tests, covers, line."""
+    pages, sections, row = [], [], None
     for number, line in enumerate(path.read_text().splitlines(), 1):
-        if line.startswith("## "):
+        if line.startswith("# "):
+            head, sections, row = [line], [], None
+        elif line.startswith("page: ") and not sections:
+            pages.append((line[6:], head, sections))
+        elif line.startswith("## "):
             sections.append((line[3:], []))
             row = None
         elif not sections:
@@ -49,11 +53,14 @@ def read_table(path):
             row["covers"] = [one.strip() for one in line[10:].split(",")]
         elif line.strip():
             sys.exit(f"{path}:{number}: expected a section, a row (- ), tests: or covers:")
-    for _, rows in sections:
-        for one in rows:
-            if not one["tests"]:
-                sys.exit(f"{path}:{one['line']}: the row names no tests")
-    return head, sections
+    for one in rows_of(pages):
+        if not one["tests"]:
+            sys.exit(f"{path}:{one['line']}: the row names no tests")
+    return pages
+
+
+def rows_of(pages):
+    return [row for _, _, sections in pages for _, rows in sections for row in rows]
 
 
 def all_there_is(source, build):
@@ -142,20 +149,21 @@ def check(row, build, there, tests):
 
 def main():
     source, build = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    head, sections = read_table(source / TABLE)
+    pages = read_table(source / TABLE)
     there, tests = all_there_is(source, build), None if "--page" in sys.argv else commands(build)
-    lines = head
-    for title, rows in sections:
-        lines += [f"## {title}", "", "| guarantee | test | covers |", "|---|---|---|"]
-        lines += [f"| {row['says']} | {row['tests']} | {check(row, build, there, tests)} |" for row in rows]
-        lines.append("")
-    text = "\n".join(lines)
-    page = source / PAGE
-    if "--write" in sys.argv or "--page" in sys.argv:
-        page.write_text(text)
-    elif page.read_text() != text:
-        fail(f"{PAGE} differs from {TABLE}; run tests/acceptance/promises.sh")
-    rows = [row for _, rows in sections for row in rows]
+    for name, head, sections in pages:
+        lines = list(head)
+        for title, rows in sections:
+            lines += [f"## {title}", "", "| guarantee | test | covers |", "|---|---|---|"]
+            lines += [f"| {row['says']} | {row['tests']} | {check(row, build, there, tests)} |" for row in rows]
+            lines.append("")
+        text = "\n".join(lines)
+        page = source / PAGES / name
+        if "--write" in sys.argv or "--page" in sys.argv:
+            page.write_text(text)
+        elif not page.exists() or page.read_text() != text:
+            fail(f"{PAGES}/{name} differs from {TABLE}; run tests/acceptance/promises.sh")
+    rows = rows_of(pages)
     print(f"{len(rows)} guarantees, {sum(bool(row['covers']) for row in rows)} whose coverage was checked.")
     sys.exit(1 if fail.count else 0)
 

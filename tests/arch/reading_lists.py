@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the lists of app/README.md that follow a sample from bytes to force and a scene from YAML to objects.
+"""Checks the lists of app/reading.md that follow a sample from bytes to force and a scene from YAML to objects.
 
 Each numbered line names a file and, after a colon, what runs in it. A line is refused if the file does not exist,
 if the first name beside it is not in the file or its own header, or if no earlier file reaches it: by a call of
@@ -12,7 +12,7 @@ import os
 import re
 import sys
 
-README = 'app/README.md'
+PAGE = 'app/reading.md'
 SECTIONS = ['One sample, from bytes to force', 'One scene, from YAML to objects']
 INCLUDE_FOLDERS = [f'{module}/{part}' for module in ('app/session', 'app/scene', 'render', 'driver')
                    for part in ('include', 'src')]
@@ -64,11 +64,11 @@ def has(path, name):
     return all(part in text if part == 'operator()' else re.search(rf'\b{part}\b', text) for part in name.split('::'))
 
 
-def faults_of(readme):
+def faults_of(page):
     """Returns the faults of the lists of a page, one sentence each, and the number of files in each list."""
     faults, counts = [], []
     for title in SECTIONS:
-        section = readme.partition(f'\n## {title}\n')[2].partition('\n## ')[0]
+        section = page.partition(f'\n## {title}\n')[2].partition('\n## ')[0]
         count, earlier = 0, []
         for line in section.splitlines():
             if not re.match(r'\d', line):
@@ -99,10 +99,10 @@ def faults_of(readme):
 
 def main():
     os.chdir(sys.argv[1])
-    readme = text_of(README)
-    faults, counts = faults_of(readme)
+    page = text_of(PAGE)
+    faults, counts = faults_of(page)
     for fault in faults:
-        print(f'{README}: {fault}')
+        print(f'{PAGE}: {fault}')
     for title, count in zip(SECTIONS, counts):
         print(f'{title}: {count} files')
     planted = {
@@ -115,7 +115,7 @@ def main():
         'a line without a name': ('`judge_size`\n', '`judge_size`\n16. something\n'),
     }
     for what, (before, after) in planted.items():
-        if readme.count(before) == 0 or not set(faults_of(readme.replace(before, after))[0]) - set(faults):
+        if page.count(before) == 0 or not set(faults_of(page.replace(before, after))[0]) - set(faults):
             print(f'This test does not detect {what}.')
             faults.append(what)
     return 1 if faults else 0

@@ -37,7 +37,7 @@ class ProxyFilter {
  public:
   /// Path of the filtered proxy per path of the tip. Over convex surfaces the exact closest point
   /// needs 1, over the smooth cells of a torus 1.2, of a bumpy ball 2.3 (1 + the greatest |dn| L /
-  /// |dp| of render/src/track/README.md). A ratio of 4 leaves these unchanged. [chosen]
+  /// |dp| of render/src/track/trackers.md). A ratio of 4 leaves these unchanged. [chosen]
   static constexpr double kPathRatio = 4;
   /// Share of the tracked force, along the filtered proxy's path, that is given to a spring that
   /// has become too short, so that missing depth returns. At 2 N it is 0.04 N, which the dry
