@@ -12,7 +12,7 @@
 
 namespace thimble::driver {
 
-/// Size of the largest report that any arm sends or receives, in bytes: the line buffer of the
+/// Capacity of a report buffer, bytes. The largest report of any arm fits: the line buffer of the
 /// Haptikfabriken boards [S forsslund/woodenhaptics firmware, buf_len]. A full-speed HID report is
 /// half as long.
 inline constexpr std::size_t kReportCapacity = 128;
@@ -20,7 +20,7 @@ inline constexpr std::size_t kReportCapacity = 128;
 /// Contents of one report from an arm, in the arm's own units.
 struct ArmReading {
   std::array<std::int32_t, 3> counts{};  ///< Motor encoders, counts.
-  /// Gimbal encoders or other values that the arm sends there.
+  /// Counts of gimbal encoders, or other values that the arm sends in the same fields.
   std::array<std::int32_t, 3> auxiliary{};
   std::uint16_t buttons = 0;  ///< Buttons, one bit each.
   /// Sequence number of the report, if the arm sends one; used to detect repeated reports.
@@ -34,8 +34,9 @@ struct ArmPose {
   Eigen::Matrix3d J_BT = Eigen::Matrix3d::Zero();  ///< Jacobian d p_BT / d q, m/rad.
 };
 
-/// Interface of one kind of arm: its wire format and its geometry, both stateless pure functions.
-/// The driver accesses every arm through it. To add an arm, implement it under arms/NAME/.
+/// Interface of one kind of arm that has a wire format: its wire format and its geometry, both
+/// stateless pure functions. WireLink accesses these arms through it (ArmLink). To add an arm,
+/// implement this interface in driver/src/arms/NAME/.
 class THIMBLE_EXPORT Arm {
  public:
   Arm() = default;
@@ -63,17 +64,17 @@ class THIMBLE_EXPORT Arm {
   /// Returns the conversion from torque to current for each motor. Real-time: safe.
   virtual const std::array<MotorDrive, 3>& drives() const noexcept = 0;
 
-  /// Returns whether the encoders count from zero at the pose in which the arm's board starts. Such
-  /// an arm must be in its home pose at every start of the board. False for an arm with absolute
-  /// encoders, and for one that finds its own zero. Real-time: safe.
+  /// Returns whether the encoders count from zero at the pose that the arm has when its board
+  /// starts. Such an arm must be in its home pose at every start of the board. False for an arm
+  /// with absolute encoders, and for one that finds its own zero. Real-time: safe.
   virtual bool zero_at_power_on() const noexcept { return true; }
 
-  /// Returns whether a gimbal is mounted whose encoder counts are part of each reading. Real-time:
+  /// Returns whether the arm has a gimbal whose encoder counts are part of each reading. Real-time:
   /// safe.
   virtual bool has_gimbal() const noexcept { return false; }
 
   /// Computes the gimbal angles (rad) and the rotation of the stylus in the base from a reading and
-  /// its pose. Leaves both unchanged without a gimbal. Real-time: safe.
+  /// its pose. If the arm has no gimbal, leaves both unchanged. Real-time: safe.
   virtual void orient(const ArmReading& /*reading*/, const ArmPose& /*pose*/,
                       Eigen::Vector3d& /*gimbal*/, Eigen::Matrix3d& /*R_BT*/) const noexcept {}
 };

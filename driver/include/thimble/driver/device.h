@@ -28,17 +28,17 @@ class WorkspaceWalls;
 /// Settings of the virtual walls around the workspace of an arm: a box aligned with the world axes.
 /// No walls by default.
 struct WallSettings {
-  /// Default stiffness, N/m [chosen: a latency of 3 ms gives it the strength of a negative damper
-  /// of 0.6 N s/m (K L, PHYSICS 1.1), less than the 1.5 N s/m that the damping takes on average].
+  /// Default stiffness K, N/m [chosen: a latency L of 3 ms acts like a negative damper of K L = 0.6
+  /// N s/m (PHYSICS 1.1). This is less than the mean of the damping, 1.5 N s/m].
   static constexpr double kStiffness = 200;
-  /// Default damping while the tip moves outwards, N s/m [chosen: an eighth of m / T (1 + 2 d) for
-  /// 75 g at 1 kHz and a delay of a tick].
+  /// Default damping while the tip moves outwards, N s/m [chosen: an eighth of m / (T (1 + 2 d)),
+  /// for a mass m of 75 g, a period T of 1 ms and a delay d of one tick].
   static constexpr double kDamping = 3;
-  /// Distance between the box of the arm file and the wall, m [chosen: objects at the edge of the
-  /// box are felt without the wall; the boxes lie 20 mm or more inside the reach].
+  /// Distance from the box of the arm file to the wall, m [chosen: objects at the edge of the box
+  /// are felt without the wall. The boxes end 20 mm or more inside the reach of their arms].
   static constexpr double kMargin = 0.01;
-  /// Default depth behind the wall at which the force is switched off, m [chosen: 6 N of the
-  /// spring, more than most arms here exert].
+  /// Default depth behind the wall at which the force is switched off, m [chosen: the spring then
+  /// exerts 6 N, more than most arms here can exert].
   static constexpr double kBeyond = 0.03;
 
   Eigen::Vector3d min_W = Eigen::Vector3d::Constant(-HUGE_VAL);  ///< Minimum corner, m.
@@ -51,16 +51,17 @@ struct WallSettings {
 };
 
 /// Counters of the workspace walls. The force of the walls is their contribution to the requested
-/// force. On each axis its sign is opposite to the side on which the tip is outside the box.
+/// force. On each axis on which the tip is outside the box, it points towards the box.
 struct WallCounters {
   std::uint64_t pushed = 0;                ///< Number of ticks in which a wall pushed.
   Eigen::Vector3d f_W{0, 0, 0};            ///< Force of the walls in the last of these ticks, N.
   Eigen::Vector3d f_strongest_W{0, 0, 0};  ///< Largest force of the walls, N.
 };
 
-/// Enabling inputs: a person must hold all of them for the arm to get a force. None by default.
+/// Enabling inputs. An arm gets a force only while a person holds all inputs that are set. By
+/// default none is set.
 struct HoldToRun {
-  /// Buttons of the arm, one bit each, one of which must be held; 0: none.
+  /// Mask of arm buttons, one bit each. At least one of them must be held; 0: no button.
   std::uint16_t buttons = 0;
   bool by_caller = false;  ///< True if the caller monitors an input (Device::hold_until).
 
@@ -68,7 +69,7 @@ struct HoldToRun {
   bool named() const noexcept { return buttons != 0 || by_caller; }
 };
 
-/// Settings of a device: its place, limits and monitoring.
+/// Settings of a device: pose of the arm's base, limits and monitoring.
 struct THIMBLE_EXPORT DeviceSettings {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the arm's base in the world.
   /// Position of the arm's base in the world, m.
@@ -76,21 +77,22 @@ struct THIMBLE_EXPORT DeviceSettings {
   GateLimits limits;  ///< Limits of force, rise and speed.
   /// Energy stage of the gate; kNone: no stage.
   EnergyGuardSettings energy{};
-  MotionWatchSettings motion{};          ///< Settings of the motion watch.
-  HeatSettings heat{};                   ///< Thermal limits of the motors, if known.
-  double velocity_corner_frequency = 0;  ///< Pole of the velocity estimate, Hz; 0: none.
-  /// Time without a report after which a fault occurs, ns (20 reports of a full-speed USB arm;
-  /// chosen).
+  MotionWatchSettings motion{};  ///< Settings of the motion watch.
+  HeatSettings heat{};           ///< Thermal limits of the motors, if known.
+  /// Corner frequency of the low-pass filter of the velocity, Hz; 0: no filter.
+  double velocity_corner_frequency = 0;
+  /// Time without a report after which a fault occurs, ns [chosen: 20 reports of a full-speed USB
+  /// arm].
   std::int64_t silence_limit_ns = 20'000'000;
   WallSettings walls{};  ///< Walls around the workspace; by default none.
   HoldToRun hold{};      ///< Enabling inputs; by default none.
-  /// True if no real motor is behind the link, in a study or a test with a simulated arm. `limits`
-  /// may then be so wide that they have no effect.
+  /// True if no real motor is behind the link, for a study or a test with a simulated arm. Then
+  /// `limits` may be too wide to protect a person.
   bool no_motors = false;
 
-  /// Fails if a limit is not a positive finite number or gives no protection (GateLimits). Also
-  /// fails if the place of the base is not a rotation and a position. Real-time: never from the
-  /// servo thread.
+  /// Checks the settings. Fails if a limit is not a positive finite number or is too loose to
+  /// protect a person (GateLimits). Also fails if `R_WB` is not a rotation or `p_WB` is not a valid
+  /// position. Real-time: never from the servo thread.
   Result<void> check() const;
 };
 
@@ -106,38 +108,41 @@ struct WireCounters {
   std::uint64_t replugged = 0;  ///< Number of times that a lost link was replaced.
 };
 
-/// Knowledge of the caller about the arm's pose when it requests forces.
+/// Home-pose check that a caller has made before it requests forces.
 enum class HomeCheck : std::uint8_t {
-  kNone,  ///< Nothing. Sufficient while `Device::home_needed` is false.
-  /// The caller has seen the arm in its home pose, or the arm's counts cannot have restarted.
+  kNone,  ///< No check. Sufficient while `Device::home_needed` is false.
+  /// The caller has seen the arm in its home pose, or knows that its counts did not restart.
   kPassed,
 };
 
-/// An open arm behind its link. Its stages are idle -> active -> (fault ->) idle, until destroyed.
+/// Open arm and its link. A device is idle until `activate`, and active until `deactivate`. After a
+/// fault it stays in the stage kFault until `activate` is called again (DeviceStage). A clock that
+/// steps back is a fault.
 ///
-/// Every exit sends zero force: `deactivate`, a fault, and the destructor. A fault latches until
-/// `activate` is called again. A clock that steps back is a fault. Used by one thread at a time,
-/// except `offer`, `close_lost_link`, `ask_to_activate` and `hold_until`.
+/// `deactivate`, a fault and the destructor send zero force. Only one thread at a time may use a
+/// device. The exceptions are `offer`, `close_lost_link`, `ask_to_activate` and `hold_until`.
 ///
-/// The fault is the first reason why the force is off. The state of the link (`link_state`) is
-/// independent: an arm can be disconnected because of, or after, any other fault.
+/// If several faults occur, `fault` returns the first. The state of the link (`link_state`) is
+/// independent of it: an arm can be disconnected because of, or after, any other fault.
 ///
 /// After a disconnection the loop continues with zero force. Another thread finds the reconnected
 /// arm by its serial number, closes the lost link (`close_lost_link`), opens a new one and offers
 /// it. The next tick takes the offer and reads positions again. Forces return only when the user
 /// requests them (`ask_to_activate`).
 ///
-/// Some encoders count from the pose in which the arm's board started
-/// (ArmTraits::zero_at_power_on). They are wrong after every restart of the board, with or without
-/// a disconnection. Such an arm must return to its home pose (`home_needed`) before it gets forces
-/// after a new link, a silence, or a jump of the position without a report.
+/// The encoders of some arms count from the pose that the arm had when its board started
+/// (ArmTraits::zero_at_power_on). Their counts are wrong after every restart of the board, with or
+/// without a disconnection. After a new link, a silence, or a position jump without a report, the
+/// board may have restarted. Such an arm then gets no force before it returns to its home pose
+/// (`home_needed`).
 class THIMBLE_EXPORT Device {
  public:
-  /// Opens a device on the link to an arm. Waits for the first report up to `timeout_ns` after
-  /// `clock_now_ns`, through the link's deadline. Meanwhile it sends zero force, because some arms
-  /// report only when addressed. Fails if no report arrives or none is valid, or if the settings
-  /// are invalid (`DeviceSettings::check`). Also fails if they contain heat limits but the link
-  /// does not expose its motors. Real-time: never from the servo thread.
+  /// Opens a device on the link to an arm. Waits for the first report until `timeout_ns` after
+  /// `clock_now_ns`, on the clock of the link's deadlines. Meanwhile it sends zero force, because
+  /// some arms report only in response to a message. Fails if no report arrives or none is valid,
+  /// or if the settings are invalid (`DeviceSettings::check`). Also fails if heat limits are set
+  /// but the link does not report its motors (ArmTraits::motors). Real-time: never from the servo
+  /// thread.
   static Result<std::unique_ptr<Device>> open(std::unique_ptr<ArmLink> link,
                                               const DeviceSettings& settings,
                                               std::int64_t clock_now_ns,
@@ -145,8 +150,9 @@ class THIMBLE_EXPORT Device {
 
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
-  /// Sends zero force, then closes the link. If a force may still act because the arm did not
-  /// accept zero force, first calls `insist_on_zero` in real time, unless that has been done.
+  /// Sends zero force, then closes the link. If the arm did not accept zero force, a force may
+  /// still act. The destructor then first calls `insist_on_zero` on the wall clock, unless the
+  /// caller has done so.
   ~Device();
 
   /// Enables forces from the next tick on, with a soft start, and clears a fault. Fails if the link
@@ -159,32 +165,32 @@ class THIMBLE_EXPORT Device {
   void deactivate() noexcept;
 
   /// Sends zero force every millisecond of `clock`, until the arm accepts it or the link is lost.
-  /// Stops after `GateLimits::watchdog_ns`, when the arm's own watchdog must have switched it off.
-  /// Returns whether zero force was accepted; if not, the fault is kRefused. For use at the end of
-  /// a loop. Real-time: safe; waits, and a write may wait as well.
+  /// Stops after `GateLimits::watchdog_ns`, when the arm's own watchdog must have switched the
+  /// motors off. Returns whether zero force was accepted; if not, the fault is kRefused. For use at
+  /// the end of a loop. Real-time: safe; waits, and a write may wait as well.
   bool insist_on_zero(Clock& clock) noexcept;
 
-  /// Returns whether the acting force is known to be zero. That is so if the last message was zero
-  /// force and has left this computer (ArmLink::settled), and no message with a force has failed
-  /// since. If false, a force may act until the arm's own watchdog switches it off. From the thread
-  /// that uses the device. Real-time: safe.
+  /// Returns whether the acting force is known to be zero. This requires that the last message was
+  /// zero force and has left this computer (ArmLink::settled). It also requires that no message
+  /// with a force has failed since. Otherwise a force may act until the arm's own watchdog switches
+  /// the motors off. Call from the thread that uses the device. Real-time: safe.
   bool zero_assured() const noexcept;
 
-  /// Starts a tick: reads the newest report and computes the tip's position and velocity. A report
-  /// that implies a change of tip speed by 1 m/s within 1 ms is dropped once. No hand does that,
-  /// but a disturbed encoder line does; a second such report in a row is accepted. Without a new
-  /// report the last state is returned with `fresh` false; after `silence_limit_ns` this is a
-  /// fault. Real-time: safe; waits no longer than `deadline_ns`.
+  /// Starts a tick: reads the newest report and computes the tip's position and velocity. Drops a
+  /// report that implies a change of tip speed of more than 1 m/s within 1 ms. A hand cannot cause
+  /// such a change, but a disturbed encoder line can. A second such report in a row is accepted.
+  /// Without a new report, returns the last state with `fresh` false. After `silence_limit_ns`
+  /// without a report, latches a fault. Real-time: safe; waits no longer than `deadline_ns`.
   const DeviceState& read(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
 
-  /// Reads the newest report as `read` does and sends zero force: for a caller that checks the arm
-  /// before a run. It counts no tick. A silence is not a fault, but can make the home pose
-  /// required. Real-time: safe.
+  /// Reads the newest report as `read` does and sends zero force, for a caller that checks the arm
+  /// before a run. The call does not count as a tick. A silence is not a fault, but may make the
+  /// home pose required (`home_needed`). Real-time: safe.
   const DeviceState& idle(std::int64_t now_ns, std::int64_t deadline_ns) noexcept;
 
   /// Ends a tick: passes the command through the gate and sends the result, or zero force if the
-  /// device is not active. If the arm does not accept the message, the previous force still acts,
-  /// and the next force rises from it. Real-time: safe.
+  /// device is not active. If the arm does not accept the message, the previous force still acts.
+  /// The rise limit of the next force then starts from it. Real-time: safe.
   void write(const ForceCommand& command) noexcept;
 
   /// Latches a fault that the caller has detected; the force is switched off. Real-time: safe.
@@ -210,14 +216,14 @@ class THIMBLE_EXPORT Device {
                             std::memory_order_release);
   }
 
-  /// Reports that the enabling input of the caller (HoldToRun::by_caller) counts as held until a
-  /// time of the loop's clock, ns. The caller repeats the call while the input is held. From any
-  /// thread. Real-time: safe.
+  /// Marks the enabling input of the caller (HoldToRun::by_caller) as held until `time_ns` on the
+  /// loop's clock. The caller repeats the call while the input is held. From any thread. Real-time:
+  /// safe.
   void hold_until(std::int64_t time_ns) noexcept;
 
-  /// Latches the fault for a suspend of the computer (Clock::asleep_ns). No force is sent until the
-  /// device is activated again. The encoder counts become doubtful, because a board may have lost
-  /// power. Real-time: safe.
+  /// Latches Fault::kSuspended after the computer was suspended (Clock::asleep_ns). No force is
+  /// sent until the device is activated again. If the encoders count from zero at power-on, the
+  /// home pose becomes required, because the board may have lost power. Real-time: safe.
   void wake_from_sleep() noexcept {
     gate_.trip(Fault::kSuspended);
     require_home_pose();
@@ -235,12 +241,13 @@ class THIMBLE_EXPORT Device {
   /// board may have restarted and its counts may be wrong. Always false for an arm with absolute
   /// encoders, one that finds its own zero, or one whose pose its vendor reports. Real-time: safe.
   bool home_needed() const noexcept { return home_needed_; }
-  /// Returns the reason why the force is off. Real-time: safe.
+  /// Returns the latched fault, the first if several occurred; kNone without a fault. Real-time:
+  /// safe.
   Fault fault() const noexcept { return gate_.fault(); }
   /// Returns the last state read. Real-time: safe.
   const DeviceState& state() const noexcept { return state_; }
-  /// Returns the acting force, N in the world: that of the last message that the arm accepted; zero
-  /// once the link is lost. Real-time: safe.
+  /// Returns the acting force, N in the world. It is the force of the last message that the arm
+  /// accepted, or zero once the link is lost. Real-time: safe.
   const Eigen::Vector3d& f_sent_W() const noexcept { return f_sent_W_; }
   /// Returns the counters of messages on the link. Real-time: safe.
   const WireCounters& wire_counters() const noexcept { return wire_; }
@@ -279,8 +286,8 @@ class THIMBLE_EXPORT Device {
   void stop_at_walls(const ForceCommand& command) noexcept;
   void pass_on(const ForceCommand& command, double held) noexcept;
   void forget_velocity() noexcept;
-  /// Returns the velocity used by the gate, m/s; independent of the smoothing of the state for
-  /// callers.
+  /// Returns the velocity used by the gate, m/s. It does not depend on a slow filter that a law
+  /// requests for the velocity in `state`.
   const Eigen::Vector3d& v_gate_W() const noexcept {
     return own_velocity_ != nullptr ? v_own_W_ : state_.v_WT;
   }
@@ -293,7 +300,7 @@ class THIMBLE_EXPORT Device {
   /// Requested activation.
   enum class Asked : std::uint8_t { kNo, kYes, kAtHome };
 
-  std::unique_ptr<ArmLink> link_;  // Null while the link is lost, once the old one was retired.
+  std::unique_ptr<ArmLink> link_;  // Null after the lost link was retired, until a new one.
   ArmTraits traits_;
   DeviceSettings settings_;
   SafetyGate gate_;
@@ -303,7 +310,8 @@ class THIMBLE_EXPORT Device {
   // Position of the tip when the power was last integrated, and whether it is known.
   Eigen::Vector3d p_power_WT_{0, 0, 0};
   bool placed_ = false;
-  // Since activation: a program requested a force; that, or storages were named.
+  // Since activation: true if a program requested a force; true if that happened or a law declared
+  // stored energy.
   bool programs_ = false;
   bool explained_ = false;
 
@@ -334,7 +342,7 @@ class THIMBLE_EXPORT Device {
   bool reported_ = false;  // True if a report arrived over this link.
   // True if f_sent_W_ is the last force that the arm accepted over this link.
   bool force_confirmed_ = false;
-  bool silent_ = false;  // True if no report arrived for the silence limit, nor since.
+  bool silent_ = false;  // True after the silence limit, until a report arrives.
   bool spoken_ = false;  // True if a message was sent or refused since the last report.
   bool home_needed_ = false;
   // True if `insist_on_zero` was called for a zero force that was not accepted.

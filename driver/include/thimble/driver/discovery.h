@@ -13,11 +13,12 @@
 
 namespace thimble::driver {
 
-/// Certainty that a board belongs to an arm. USB ids are not sufficient: 16c0:0480 to 048f are used
-/// by a Teensy with any program, and 1234:0006 is the default of mbed's USB library.
+/// Certainty that a board belongs to an arm. A USB id is not sufficient. A Teensy with any program
+/// uses 16c0:0480 to 048f, and mbed's USB library uses 1234:0006 by default.
 enum class Certainty : std::uint8_t {
   kKnown,  ///< The USB id or product string is that of an arm.
-  /// Looks like an arm; when opened, it must identify itself by the messages that it sends unasked.
+  /// The board looks like an arm. After it is opened, it must identify itself by the messages that
+  /// it sends without a request.
   kProvesItself,
   /// Unknown device, possibly an arm; it cannot be identified before data is sent to it.
   kUnknown,
@@ -29,7 +30,7 @@ struct THIMBLE_EXPORT FoundArm {
   ArmKind kind = ArmKind::kUnsupported;  ///< Protocol of the board (arm_table.h).
   std::string arm;                       ///< Name of the arm ("WoodenHaptics").
   std::string bus;                       ///< Connection ("USB HID").
-  std::string address;                   ///< Place of the connection ("bus 1, device 4").
+  std::string address;                   ///< Location on the bus ("bus 1, device 4").
   std::uint16_t vendor_id = 0;           ///< USB vendor id.
   std::uint16_t product_id = 0;          ///< USB product id.
   std::string serial;                    ///< Serial number; empty if the arm has none.
@@ -42,7 +43,7 @@ struct THIMBLE_EXPORT FoundArm {
   Certainty certainty = Certainty::kKnown;  ///< Certainty that it is an arm.
   std::string manufacturer, product;        ///< USB strings; empty if the device has none.
   std::uint16_t release = 0;                ///< USB release number (bcdDevice).
-  /// HID reports, if the device is on HID and has a driver.
+  /// Properties of its HID reports, if it is a HID device with a kernel driver.
   HidReports hid;
   bool serial_is_shared = false;  ///< True if another board has the same serial number.
   /// Versions that a vendor service or library reports; may be empty.
@@ -50,21 +51,21 @@ struct THIMBLE_EXPORT FoundArm {
   /// Reason why a service cannot use the arm now, in one sentence; empty if it can.
   std::string trouble;
 
-  /// Returns the name for users, which is also the name of its calibration. It is the serial number
-  /// if that is unique, else the name of the USB socket ("usb-1-1.4" of the kernel, the same after
-  /// each reconnection to that socket).
+  /// Returns the name shown to users, which is also the name of the arm's calibration. It is the
+  /// serial number if that is unique. Otherwise it is the kernel's name of the USB socket
+  /// ("usb-1-1.4"), which is the same after each reconnection to that socket.
   std::string name() const;
 };
 
-/// Returns whether a serial number is shared by many boards, such as the 0123456789 of every mbed
-/// board, and so identifies none. Real-time: safe.
+/// Returns whether a serial number is a default that many boards share, such as 0123456789 of every
+/// mbed board. Such a number does not identify a board. Real-time: safe.
 THIMBLE_EXPORT bool is_placeholder(std::string_view serial) noexcept;
 
 /// Lists the USB boards that may be arms (app/guide/pages/driver.md lists the sources). Reads the
-/// ids, strings and report descriptors that the kernel provides below `root`/sys; opens no device
+/// ids, strings and report descriptors that the kernel provides below `root`/sys. Opens no device
 /// and needs no permission. If `root` is "/", it also lists the arms of vendor services on this
-/// computer. It listens to those for at most half a second and sends nothing. Fails if USB devices
-/// cannot be listed and no service has an arm. Real-time: never from the servo thread.
+/// computer. It listens to these services for at most half a second and sends nothing. Fails if USB
+/// devices cannot be listed and no service has an arm. Real-time: never from the servo thread.
 THIMBLE_EXPORT Result<std::vector<FoundArm>> find_arms(const std::filesystem::path& root = "/");
 
 /// Returns the contents of a small kernel text file without its newline; empty if it cannot be

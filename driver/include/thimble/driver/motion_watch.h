@@ -12,40 +12,40 @@ namespace thimble::driver {
 
 /// Settings of the motion watch.
 struct MotionWatchSettings {
-  /// Smallest apparent mass at the tip, kg. 0: unknown; the direction of the motors is not
-  /// monitored.
+  /// Smallest apparent mass at the tip, kg. If it is 0, the mass is unknown and the direction of
+  /// the motors is not monitored.
   double mass = 0;
-  int delay_ticks = 0;  ///< Delay from sampling to force in addition to the hold, ticks.
-  /// Longest time a force may be held while no encoder counts, s, for an arm that does not number
-  /// its reports. For any arm, also the longest time while the joint on which the force acts does
-  /// not count and the tip moves. Must be > 0. [chosen: a hand that rests on a surface leaves every
-  /// count unchanged for seconds, since dry friction holds the arm; a tip that stops dead is
-  /// noticed within 32 ms]
+  int delay_ticks = 0;  ///< Delay from sampling to force beyond the zero-order hold, ticks.
+  /// Longest time for which a force may be held while no encoder count changes, s. This limit
+  /// applies to an arm that does not number its reports. For any arm, it also limits the time for
+  /// which a joint under force keeps its count while the tip moves. Must be > 0. [chosen: while a
+  /// hand rests on a surface, dry friction may keep every count unchanged for seconds. A tip that
+  /// stops abruptly is detected within 32 ms]
   double max_hold = 10;
 };
 
-/// Monitors motors and encoders by the motion of the tip. Detects motors that act in the wrong
-/// direction, an encoder that does not change although it should, and repeated reports.
+/// Monitor of motors and encoders, based on the motion of the tip. It detects motors that act in
+/// the wrong direction, an encoder that does not change although it should, and repeated reports.
 ///
-/// Positions and forces are averaged over blocks of 4 ms. Five accelerations of neighbouring blocks
-/// (20 ms) are compared with the forces sent, along the direction in which each joint moves the tip
-/// and along the force itself. The tip of an arm with reversed motors gains speed against the
-/// force, in proportion to the force. A hand can do that for a moment, but not in the proportion 1
-/// / mass (motion_watch.cpp). Each correct response of the tip counts as evidence for the motors
-/// and is weighed against evidence of reversal.
+/// The watch averages positions and forces over blocks of 4 ms. It compares five accelerations of
+/// neighbouring blocks (20 ms) with the forces sent. It does so along the direction in which each
+/// joint moves the tip, and along the force itself. The tip of an arm with reversed motors gains
+/// speed against the force, in proportion to the force. A hand can cause that for a moment, but not
+/// with the ratio 1 / mass (motion_watch.cpp). Each correct response of the tip is evidence of
+/// correct motors and offsets evidence of reversal.
 ///
-/// Not detected: faults under a constant force (a hand may hold it or throw against it), and a
-/// surface softer than the hand's grip, for which the reversed arm is stable and slow. All
-/// functions are Real-time: safe.
+/// The watch detects no faults under a constant force, because a hand may hold that force or throw
+/// against it. It also does not detect reversed motors on a surface softer than the hand's grip,
+/// where the arm is stable and slow. All functions are Real-time: safe.
 class THIMBLE_EXPORT MotionWatch {
  public:
   explicit MotionWatch(const MotionWatchSettings& settings) noexcept;
 
-  /// Resets the monitor; the motors must prove their direction again.
+  /// Clears the history. The motors must then show their direction again.
   void restart() noexcept;
 
   /// Adds a tick with the force sent in the previous tick (N, world). A tick without a report has
-  /// no position. Returns whether a block is full, so that `judge` must be called.
+  /// no position. Returns whether the block is full; the caller must then call `judge`.
   bool take(const DeviceState& state, const Eigen::Vector3d& f_sent_W) noexcept {
     if (state.fresh) {
       p_sum_ += state.p_WT;
@@ -58,8 +58,9 @@ class THIMBLE_EXPORT MotionWatch {
   }
 
   /// Closes the block that `take` has filled. Returns the fault that the motion shows, or kNone.
-  /// Columns of `J_BT`: motion of the tip per joint, in the arm's base, m/rad. `numbered` is true
-  /// if the arm numbers its reports, so that repeated ones are detected by that.
+  /// The columns of `J_BT` are the motion of the tip per joint, in the arm's base, m/rad.
+  /// `numbered` is true if the arm numbers its reports; repeated reports are then detected by their
+  /// numbers.
   Fault judge(const DeviceState& state, const Eigen::Matrix3d& R_WB, const Eigen::Matrix3d& J_BT,
               bool numbered) noexcept;
 
@@ -119,17 +120,17 @@ class THIMBLE_EXPORT MotionWatch {
   std::int64_t begin_ns_ = 0, time_sum_ns_ = 0;
   int reports_ = 0, ticks_ = 0;
   std::array<std::int32_t, 3> counts_{};  // At the end of the last block.
-  std::array<bool, 3> changed_{};         // Changed since then.
+  std::array<bool, 3> changed_{};         // Changed in the last block.
   // Full blocks.
   std::array<Block, kBlocks> blocks_{};
   std::uint32_t newest_ = 0;
   std::uint32_t full_ = 0;  // blocks since the last gap
   double late_blocks_ = 0;  // delay of the force, in blocks
-  // Number of correct responses in each direction, minus the contrary.
+  // Weighted evidence of correct responses in each direction, minus that of reversed ones.
   std::array<int, 4> proof_{};
   std::array<Stillness, 3> still_{};
   double held_ = 0;          // Time since any encoder counted, under force, s.
-  double speed_before_ = 0;  // Speed of the tip when it last counted, m/s.
+  double speed_before_ = 0;  // Speed of the tip when an encoder last counted, m/s.
 };
 
 }  // namespace thimble::driver

@@ -12,12 +12,12 @@
 
 namespace thimble::render {
 
-/// Force law of a whole scene of several separate objects, each closed. Their forces are added. The
+/// Force law of a scene of separate, watertight objects. It adds the forces of all objects. The
 /// contact information is that of the object in which the tip is deepest.
 class SceneTouch {
  public:
-  /// Constructs the law from the objects in the scene's order; TouchInfo::object numbers them from
-  /// 0.
+  /// Constructs the law from the objects in the scene's order. TouchInfo::object is the index of an
+  /// object in this order, from 0.
   explicit SceneTouch(std::vector<std::unique_ptr<ObjectTouch>> objects)
       : objects_(std::move(objects)) {}
 
@@ -38,14 +38,15 @@ class SceneTouch {
     return sum;
   }
 
-  /// Prefetches the memory of all objects for a tick with about this state (ForceLaw::prepare).
-  /// Real-time: safe.
+  /// Prefetches the memory of all objects that a tick with about the state `expected` will read
+  /// (ForceLaw::prepare). Real-time: safe.
   void prepare(const driver::DeviceState& expected) const noexcept {
     for (const auto& object : objects_) object->prepare(expected);
   }
 
-  /// Returns whether a point (W, m) is inside an object at rest; for checks outside of the servo
-  /// loop. Real-time: safe; time grows with the objects' size.
+  /// Returns whether a point (W, m) is inside an object that has neither moved nor deformed. For
+  /// checks outside of the servo loop. Real-time: safe unless an object is paged from disk; the
+  /// time grows with the size of the objects.
   bool inside(const Eigen::Vector3d& p_W) const noexcept {
     for (const auto& object : objects_) {
       if (object->is_static() && object->inside(p_W)) return true;
@@ -54,8 +55,8 @@ class SceneTouch {
   }
 
   /// Writes the dent of the first dented object to `patch` for drawing. Returns false and leaves
-  /// `patch` unchanged if no object can dent. Real-time: safe; intended for the frame rate of a
-  /// display.
+  /// `patch` unchanged if no object can dent. Real-time: safe; intended to be called once per
+  /// display frame.
   bool draw(BodyPatch& patch) noexcept {
     bool any = false;
     for (std::size_t i = 0; i < objects_.size(); ++i) {
@@ -68,7 +69,8 @@ class SceneTouch {
     return any;
   }
 
-  /// Returns the number of contacts lost by objects that moved or deformed. Real-time: safe.
+  /// Returns how many contacts ended with the tip inside an object that had moved or deformed.
+  /// Real-time: safe.
   std::uint64_t lost_contacts() const noexcept {
     std::uint64_t lost = 0;
     for (const auto& object : objects_) lost += object->lost_contacts();
@@ -77,9 +79,9 @@ class SceneTouch {
 
   /// Returns the number of objects.
   std::size_t size() const noexcept { return objects_.size(); }
-  /// Returns an object.
+  /// Returns the object with index `i` in the scene's order; `i` must be below `size()`.
   const ObjectTouch& object(std::size_t i) const noexcept { return *objects_[i]; }
-  /// Returns an object.
+  /// Overload for a scene that is not const.
   ObjectTouch& object(std::size_t i) noexcept { return *objects_[i]; }
 
  private:

@@ -51,11 +51,11 @@ enum class ClockKind {
   kPaced,    ///< Bit-identical to kVirtual, at the pace of real time or a fraction of it.
 };
 
-/// Data that a session keeps of its ticks.
+/// Amount of tick data that a session keeps.
 enum class Keep {
   kRun,  ///< All ticks, their statistics, and the seconds before a fault.
-  /// Only the newest tick. Saves about 3 MB per session and 0.3 MB per second, for many parallel
-  /// sessions. Cannot be combined with viewers.
+  /// Only the newest tick, for many parallel sessions. Saves about 3 MB per session and 0.3 MB per
+  /// second. Cannot be combined with viewers.
   kNewest,
 };
 
@@ -66,7 +66,7 @@ using OpenLink = std::function<driver::Result<std::unique_ptr<driver::ArmLink>>(
 /// Real arm to use instead of one of the simulated arms of a scene.
 struct RealArmUse {
   driver::FoundArm arm;     ///< Board of the arm.
-  scene::ArmPolicy terms;   ///< Terms of use for the arm.
+  scene::ArmPolicy terms;   ///< Terms of use: arm file, force limit, state of the feel check.
   OpenLink open_link = {};  ///< Link factory to use instead of `scene::open_link`, if set.
 };
 
@@ -95,44 +95,45 @@ struct SessionOptions {
   bool share = false;                 ///< Makes the run visible to a viewer in this process.
   bool share_if_possible = false;  ///< Continues without viewers if shared memory is unavailable.
   bool share_out = false;          ///< Makes the run visible to viewers in other processes.
-  /// A viewer moves the simulated hand and can end the run.
+  /// Lets a viewer move the simulated hand and end the run.
   bool hand_by_mouse = false;
-  /// A program moves the simulated hand (Session::lead_hand). The hand waits at the start of the
-  /// scene's path, and the run has no duration.
+  /// Lets a program move the simulated hand (Session::lead_hand). The hand waits at the start of
+  /// the scene's path, and the run has no duration.
   bool hand_by_program = false;
-  /// The caller restarts the run when a viewer requests it. Never applies to real arms.
+  /// True if the caller restarts the run when a viewer requests it. Never applies to real arms.
   bool restarts = false;
-  std::string share_name = {};  ///< Name of the shared run; if empty, the scene's name, with a
-                                ///< number appended if it is taken.
+  /// Name of the shared run. If it is empty, the name is that of the scene, with a number appended
+  /// if that name is taken.
+  std::string share_name = {};
   /// Factor on the loop rate of the scene (scene::SceneReading). Cannot be used with a real arm,
   /// whose rate is fixed.
   double rate_factor = 1;
   /// Accuracy/performance preset (scene::kQualityNames).
   std::string quality = "normal";
   std::optional<double> budget = {};  ///< Time per tick that `quality` "auto" may use, ns.
-  /// Modifies the scene before anything is built from it. A recording cannot contain this change
-  /// and says so.
+  /// Modifies the scene before anything is built from it. A recording does not contain this change;
+  /// it notes that there was one.
   std::function<void(scene::Scene&)> adjust = {};
   /// Meshes shared with other sessions (scene/shared_meshes.h); if null, not shared.
   std::shared_ptr<scene::SharedMeshes> meshes = {};
   Keep keep = Keep::kRun;  ///< Data kept of the ticks.
   bool log = false;        ///< Logs the events of the run.
-  /// The real arm was in its home pose at power-on, so it need not be moved there.
+  /// True if the real arm was in its home pose at power-on. Then it need not be moved there.
   bool homed = false;
-  /// Runs until it is stopped. The simulated hand stays at the end of its path, and the loop
-  /// continues with zero force after a fault. Cannot be combined with `duration`.
+  /// Continues the run until it is stopped. The simulated hand stays at the end of its path, and
+  /// the loop continues with zero force after a fault. Cannot be combined with `duration`.
   bool endless = false;
-  /// The caller handles scenes with several arms (Session::arms). If false, such a scene is an
-  /// error.
+  /// True if the caller handles scenes with several arms (Session::arms). If false, such a scene is
+  /// an error.
   bool several_arms = false;
-  /// The caller changes the settings of a scene with one arm (Session::turn_knob). Cannot be
-  /// combined with viewers, which change settings themselves.
+  /// True if the caller changes the settings of a scene with one arm (Session::turn_knob). Cannot
+  /// be combined with viewers, which change settings themselves.
   bool knobs = false;
   OpenLink open_link = {};      ///< Link factory for `real_arm`, if set.
-  driver::HoldToRun hold = {};  ///< Enabling input that must be held at each arm for a force.
+  driver::HoldToRun hold = {};  ///< Enabling inputs that each arm needs for a force.
 };
 
-/// A numeric setting of a scene's object that can be changed during a run.
+/// Numeric setting of a scene's object that can be changed during a run.
 struct Knob {
   std::string name;         ///< Name, such as "OBJECT: stiffness".
   std::string unit;         ///< SI unit.
@@ -140,13 +141,13 @@ struct Knob {
   double value = 0;         ///< Current value.
 };
 
-/// A stop flag that is never set.
+/// Stop flag that is never set.
 inline const std::atomic<bool> kNeverStopped{false};
 
 /// One run of a scene: its configuration, the servo loop, and the observers of its ticks. The servo
-/// runs on the thread that calls `run` or `step`. Meanwhile another thread may read `newest`. All
-/// other functions are called before or after the run, or between two steps, unless they say
-/// otherwise.
+/// runs on the thread that calls `run` or `step`. Meanwhile another thread may read `newest`.
+/// Unless its comment says otherwise, any other function must be called before or after the run, or
+/// between two steps.
 class THIMBLE_EXPORT Session {
  public:
   /// Loads a scene and opens its arm, ready to run. `scene` is a file or a name
@@ -157,9 +158,9 @@ class THIMBLE_EXPORT Session {
 
   /// Opens a session with the scene, meshes, hand paths and options of `other` and a new seed.
   /// Viewers and recording are not copied. If the files have not changed, results are bit-identical
-  /// to those after `open`, which takes longer. Fails unless `other` uses virtual time and the
-  /// built-in clock. `other` may have run, or may be running on another thread. Real-time: never
-  /// from the servo thread.
+  /// to those of `open`, which is slower. Fails unless `other` uses virtual time and the built-in
+  /// clock. `other` may have run, or may be running on another thread. Real-time: never from the
+  /// servo thread.
   static driver::Result<std::unique_ptr<Session>> open_like(const Session& other,
                                                             std::uint64_t seed);
 
@@ -182,43 +183,47 @@ class THIMBLE_EXPORT Session {
 
   /// Replaces the force law of the scene for the whole run. The law may call `touch` for the
   /// scene's force; its own force passes through the same gate. It must outlive the run. Fails if a
-  /// tick has run or the time is not virtual: external code is not real-time safe, so it is refused
-  /// on real arms. Real-time: never from the servo thread.
+  /// tick has run or the scene has several arms. Also fails if the run uses wall-clock time:
+  /// external code is not real-time safe, so it is refused on real arms. Real-time: never from the
+  /// servo thread.
   driver::Result<void> set_law(driver::ForceLaw law);
-  /// Replaces the force law of the scene by a real-time safe one, in virtual or real time. The law
-  /// neither waits nor allocates, and its duration is bounded. It may call `own_law`. Otherwise as
-  /// `set_law`. Real-time: never from the servo thread.
+  /// Replaces the force law of the scene as `set_law` does, but also in real time. The law must be
+  /// real-time safe: it neither waits nor allocates, and its duration is bounded. It may call
+  /// `own_law`. Fails if a tick has run or the scene has several arms. Real-time: never from the
+  /// servo thread.
   driver::Result<void> set_servo_law(driver::ForceLaw law);
   /// Returns the default law of the session: that of the scene, with the changes that viewers or
   /// `turn_knob` have made. Real-time: safe.
   driver::ForceLaw own_law() noexcept;
-  /// Adds an observer of every tick, after those added before. It must outlive the run. Fails once
-  /// a tick has run. Real-time: never from the servo thread.
+  /// Adds an observer of every tick of an arm. Observers are called in the order in which they were
+  /// added. The observer must outlive the run. Fails once a tick has run. Real-time: never from the
+  /// servo thread.
   driver::Result<void> add_observer(TickObserver& observer, std::size_t arm = 0);
 
   /// Runs the servo loop until the scene's duration is over or `stop` is set. With a simulated arm
   /// a fault also ends the run. With a real arm the loop continues after a fault with zero force,
-  /// so that the arm can recover. The arm always ends with zero force. Precondition: the arm is
-  /// open. Real-time: safe; it is the servo's thread.
+  /// so that the arm can recover. The run always ends with zero force. Precondition: the arm is
+  /// open. Real-time: safe; it runs on the servo thread.
   driver::ServoEnd run(const std::atomic<bool>& stop = kNeverStopped) noexcept;
   /// Runs one tick. Returns the end reason once the run is over; `run` calls this until then. Every
   /// call must pass the same `stop`. With several arms, runs the tick of each arm in turn, then
   /// steps the bodies that they touch. Real-time: safe.
   std::optional<driver::ServoEnd> step(const std::atomic<bool>& stop = kNeverStopped) noexcept;
-  /// Moves the target of the simulated hand to a point (W, m); replaces the scene's path. Returns
-  /// false if the arm does not reach the point (ArmSimulation::lead). Precondition: the arm is
-  /// simulated. Call between two ticks. Real-time: safe.
+  /// Moves the target of the simulated hand to a point (W, m); replaces the scene's path. A point
+  /// outside the workspace is projected onto its box. Returns false if the arm cannot reach the
+  /// point (ArmSimulation::lead). Precondition: the arm is simulated. Call between two ticks.
+  /// Real-time: safe.
   bool lead_hand(const Eigen::Vector3d& p_WH) noexcept;
 
   /// Returns the settings that can be changed, with current values. Empty with several arms, or if
   /// SessionOptions::knobs was not set. Any thread. Real-time: never from the servo thread.
   std::vector<Knob> knobs() const;
-  /// Changes a setting from the next tick on, without a step in force. A change over the whole
-  /// range takes at least 50 ms. The error lists the available settings, or the bounds that the
-  /// value violates. Any thread. Real-time: never from the servo thread.
+  /// Changes a setting from the next tick on, without a sudden change of force. A change over the
+  /// whole range takes at least 50 ms. The error lists the available settings, or the bounds that
+  /// the value violates. Any thread. Real-time: never from the servo thread.
   driver::Result<void> turn_knob(const std::string& name, double value);
 
-  /// Returns the scene after reading and adjustment (scene/scene_file.h).
+  /// Returns the scene as read from its file and adjusted (scene/scene_file.h).
   const scene::Scene& scene() const noexcept;
   /// Returns the scene's force law, with its objects (render/scene_touch.h).
   render::SceneTouch& touch() noexcept;
@@ -235,52 +240,53 @@ class THIMBLE_EXPORT Session {
   const scene::ArmSimulation* simulation(std::size_t arm = 0) const noexcept;  ///< Const overload.
   /// Returns whether the run uses wall-clock time.
   bool real_time() const noexcept;
-  /// Returns warnings to show the user: mesh repairs, omissions and assumptions. For a real arm
-  /// also how the limits named in the scene were applied.
+  /// Returns warnings to show the user: mesh repairs, omissions and assumptions. For a real arm,
+  /// they also state which limits of the scene were kept or ignored.
   const std::vector<std::string>& warnings() const noexcept;
 
   /// Returns the newest tick. Any thread may load it.
   const driver::Snapshot<driver::TickRecord>& newest(std::size_t arm = 0) const noexcept;
-  /// Returns every `stride`-th tick of the run, oldest first; empty if ticks are not kept. Not
-  /// while the servo runs.
+  /// Returns every `stride`-th tick of the run, oldest first; empty if ticks are not kept. Do not
+  /// call while the servo runs.
   std::span<const driver::TickRecord> ticks(std::size_t arm = 0) const noexcept;
-  /// Returns n if every n-th tick is kept; 1 up to a million ticks.
+  /// Returns the interval n of the ticks that are kept: every n-th. It is 1 up to a million ticks.
   std::uint64_t stride() const noexcept;
-  /// Returns how often gravity compensation was switched off because the tip moved along its force
-  /// (wrong compensation, or a hand). Any thread.
+  /// Returns how often gravity compensation was switched off because the tip moved in the direction
+  /// of its force. Wrong compensation or a hand causes that. Any thread.
   std::uint64_t carry_withdrawn(std::size_t arm = 0) const noexcept;
-  /// Returns the statistics of the ticks; empty if ticks are not kept. Not while the servo runs.
+  /// Returns the statistics of the ticks; empty if ticks are not kept. Do not call while the servo
+  /// runs.
   const RunStatistics& statistics() const noexcept;
-  /// Returns the figures of a run that is over or stopped. Searches the ticks for lost contacts.
-  /// `grant`: real-time properties granted to the servo's thread. Real-time: never from the servo
-  /// thread.
+  /// Returns the figures of a run that is over or stopped, and searches its ticks for lost
+  /// contacts. `grant` contains the real-time properties granted to the servo thread. Real-time:
+  /// never from the servo thread.
   RunFigures figures(const driver::RealTimeGrant& grant = {}, std::size_t arm = 0) const;
   /// Returns the number of the object with the given name; empty if the scene has none.
   std::optional<int> find_object(const std::string& name) const;
-  /// Returns the current mesh of one object, moved and deformed (W, m). If `object` is negative,
-  /// returns all objects as one mesh. Not while the servo runs. Real-time: never from the servo
-  /// thread.
+  /// Returns the mesh of one object in its current pose and shape (W, m). If `object` is negative,
+  /// returns all objects as one mesh. Do not call while the servo runs. Real-time: never from the
+  /// servo thread.
   render::TriangleMesh mesh_now(int object = -1) const;
   /// Returns all objects as one mesh, with the deepest dent of the run (W, m); empty if nothing was
-  /// dented. Not while the servo runs. Real-time: never from the servo thread.
+  /// dented. Do not call while the servo runs. Real-time: never from the servo thread.
   std::optional<render::TriangleMesh> deepest_dent() const;
 
-  /// Starts a recording of every tick from now on; ends the previous one. Several arms have one
-  /// file each (file_of_arm). If `overwrite` is false, an existing recording of the same name is an
-  /// error. A file of another kind is always an error. Call from one thread only; the servo may run
-  /// meanwhile. Real-time: never from the servo thread.
+  /// Starts a recording of every tick from now on; ends the previous one. A scene with several arms
+  /// has one file per arm (file_of_arm). If `overwrite` is false, an existing recording of the same
+  /// name is an error. A file of another kind is always an error. Call from one thread only; the
+  /// servo may run meanwhile. Real-time: never from the servo thread.
   driver::Result<void> begin_recording(const std::filesystem::path& path, bool overwrite = false);
-  /// Ends the recording and returns its file: with several arms that of the first, without a
-  /// recording empty. The error lists the missing ticks and the cause. Threads as for
-  /// `begin_recording`. Real-time: never from the servo thread.
+  /// Ends the recording and returns its file; empty if there was no recording. With several arms,
+  /// returns the file of the first arm. The error lists the missing ticks and the cause. The rule
+  /// about threads is that of `begin_recording`. Real-time: never from the servo thread.
   driver::Result<std::optional<std::filesystem::path>> end_recording();
-  /// Writes the seconds around a fault into the user's state folder and returns the file: with
-  /// several arms the first one, without a fault empty. Call after the run. Real-time: never from
-  /// the servo thread.
+  /// Writes the seconds around a fault into the user's state folder and returns the file; empty if
+  /// there was no fault. With several arms, returns the first file. Call after the run. Real-time:
+  /// never from the servo thread.
   driver::Result<std::optional<std::filesystem::path>> keep_black_box();
   /// Writes the seconds around the faults of all arms and returns the files. If `run_is_over` is
-  /// false, skips those to which the running servo still adds ticks. Real-time: never from the
-  /// servo thread.
+  /// false, skips each arm whose black box still receives ticks. Real-time: never from the servo
+  /// thread.
   driver::Result<std::vector<std::filesystem::path>> keep_black_boxes(bool run_is_over);
   /// Returns the description of this session for recordings of an arm. Real-time: never from the
   /// servo thread.
@@ -297,9 +303,9 @@ class THIMBLE_EXPORT Session {
   RunRecords& records(std::size_t arm) noexcept;  ///< Returns the observers of the given arm.
   /// Returns the shared state that viewers read; null if the run is not shared.
   SharedRun* shared() noexcept;
-  /// Makes a run visible to viewers after it was prepared without, as requested by `options`. If
-  /// `before` (a run that is over) is not null, takes over its name. Call before the first tick.
-  /// The error is that of `prepare`. Real-time: never from the servo thread.
+  /// Makes a run visible to viewers, as requested by `options`, if it was prepared without viewers.
+  /// If `before` (a run that is over) is not null, takes over its name. Call before the first tick.
+  /// The errors are those of `prepare`. Real-time: never from the servo thread.
   driver::Result<void> share(const SessionOptions& options, SharedRun* before = nullptr);
 
  private:
