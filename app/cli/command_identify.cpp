@@ -16,6 +16,7 @@
 #include "bringup/identify/simulated_bench.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
+#include "cli/options/old_names.h"
 #include "cli/prompts/key_stop.h"
 #include "cli/prompts/yes_question.h"
 #include "cli/report_error.h"
@@ -277,10 +278,13 @@ void add_identify_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(3, 9) | CLI::IsMember({0}))
       ->capture_default_str()
       ->group(kMotion);
-  sub->add_option("--force-most", command->options.max_force, "Largest force of the motion, N")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str()
-      ->group(kMotion);
+  CLI::Option* max_force =
+      sub->add_option("--max-force", command->options.max_force, "Largest force of the motion, N")
+          ->check(CLI::PositiveNumber)
+          ->capture_default_str()
+          ->group(kMotion);
+  add_old_name(*sub, "--force-most", max_force, command->options.max_force)
+      ->check(CLI::PositiveNumber);
   constexpr const char* kOutput = "Output";
   sub->add_option("--output", command->output, "New arm file (default: NAME_identified.yaml here)")
       ->option_text("FILE")
@@ -303,7 +307,7 @@ void add_identify_command(CLI::App& app, int& exit_code) {
               "The arm moves by itself, with small forces.\n"
               "--known-mass  Without it, only ratios of masses and forces are identified.\n"
               "--places      After the motion, the tip moves to these poses of its workspace.\n"
-              "--force-most  At most gate.force_max of the arm file.\n"
+              "--max-force   At most gate.force_max of the arm file.\n"
               "--yes         Without it, the command asks at a terminal. Without a terminal,\n"
               "              the file is written only with --output or --yes.\n"
               "--record      Use the recording with `thimble twin`.\n"

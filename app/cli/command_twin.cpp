@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/file_options.h"
+#include "cli/options/old_names.h"
 #include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "log/printed_text.h"
@@ -90,8 +91,10 @@ void add_twin_command(CLI::App& app, int& exit_code) {
       ->check(CLI::NonNegativeNumber);
   sub->add_option("--until", command->options.span.until, "End of the comparison, s")
       ->check(CLI::NonNegativeNumber);
-  sub->add_option("--fit-least", command->min_fit, "Smallest accepted fit of each axis, %")
-      ->check(CLI::Range(0.0, 100.0));
+  CLI::Option* min_fit =
+      sub->add_option("--min-fit", command->min_fit, "Smallest accepted fit of each axis, %")
+          ->check(CLI::Range(0.0, 100.0));
+  add_old_name(*sub, "--fit-least", min_fit, command->min_fit)->check(CLI::Range(0.0, 100.0));
   sub->add_option("--output", command->output, "Write figures.json and pictures to this folder")
       ->option_text("DIR");
   add_example(*sub, "thimble twin touch.h5 --arm my_arm.yaml",
@@ -100,7 +103,7 @@ void add_twin_command(CLI::App& app, int& exit_code) {
               "FILE      From `thimble identify --record`, or a part (--from, --until) of a\n"
               "          recording from `thimble run SCENE --record`.\n"
               "--window  The simulated arm begins each segment in the recorded state.\n"
-              "--fit-least  The exit code is 5 if the fit of an axis is below it.\n"
+              "--min-fit  The exit code is 5 if the fit of an axis is below it.\n"
               "--output  The pictures show motion, error and spectrum.");
   sub->callback([command, &exit_code] { exit_code = compare(*command); });
 }
