@@ -349,8 +349,7 @@ void add_hil_command(CLI::App& app, int& exit_code) {
   sub->add_flag("--replug", command->options.replug,
                 "Also test an unplugged cable (with --attended)")
       ->group(kPerson);
-  sub->add_option("--spring", command->options.spring,
-                  "Stiffness of a spring on the tip, N/m")
+  sub->add_option("--spring", command->options.spring, "Stiffness of a spring on the tip, N/m")
       ->check(CLI::Range(50.0, 2000.0))
       ->group(kPerson);
   sub->add_option("--known-mass", command->options.known_mass, "Mass to fix to the tip, kg")
