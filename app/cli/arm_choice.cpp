@@ -18,12 +18,12 @@ void ArmChoice::add_options(CLI::App& command) {
   command
       .add_option("--device", device,
                   falls_back_to_simulation
-                      ? "auto (plugged in, else simulated), sim, or a name"
-                      : "auto (plugged in), sim, or a name (`thimble devices`)")
+                      ? "auto (plugged-in arm, else simulated), sim, or a name"
+                      : "auto (plugged-in arm), sim, or NAME (`thimble devices`)")
       ->option_text("ARM")
       ->capture_default_str()
       ->group(kArm);
-  add_arm_option(command, arm_file, "Arm file, if simulated or if the arm reports no model")
+  add_arm_option(command, arm_file, "Arm file, if the arm is simulated or reports no model")
       ->group(kArm);
   command.add_option("--firmware", firmware, "Firmware image, for arms that need one")
       ->check(CLI::ExistingFile)

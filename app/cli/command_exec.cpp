@@ -294,14 +294,14 @@ void add_exec_command(CLI::App& app, int& exit_code) {
       "Supported APIs: HDAPI, DHD, CHAI3D and the service of the Inverse3. The program\n"
       "loads Thimble's libHD, libhdPhantom, libdhd and libdrd instead of the vendor's.\n"
       "Its forces pass the safety gate. Without --device the arm is simulated.\n"
-      "With --serve haply, programs of the Inverse3 find the arm as they find the\n"
-      "vendor's service; without PROGRAM they are served until Ctrl-C.\n\n"
+      "With --serve haply, programs of the Inverse3 connect as to the vendor's\n"
+      "service. Without PROGRAM, the command serves them until Ctrl-C.\n\n"
       "--arm, --device  Repeat for a second arm.\n"
-      "--hand           path: the path in the scene. mouse: the viewer moves it. FILE:\n"
-      "                 lines \"t x y z\" (s, m), or a ROS bag.\n"
-      "--clock          virtual: each tick waits for the program, so that the program\n"
-      "                 does the same each time (simulated arms only).\n"
-      "--hold-to-run    button (the first of the arm), or button2 to button16.\n" +
+      "--hand           path: the path in the scene. mouse: the mouse in the viewer.\n"
+      "                 FILE: lines \"t x y z\" (s, m), or a ROS bag.\n"
+      "--clock          virtual: each tick waits for the program, so that runs can be\n"
+      "                 repeated exactly (simulated arms only).\n"
+      "--hold-to-run    BUTTON: button (the first of the arm), or button2 to button16.\n" +
       std::string(kRosNotes) +
       "\n\n"
       "Exit code: the program's; 4 if it was 0 and a fault switched the force off.");
@@ -327,7 +327,9 @@ void add_exec_command(CLI::App& app, int& exit_code) {
       ->group(kArm);
   command->add_flag("--homed", options.homed, "Trust that the arm was powered on in its home pose")
       ->group(kArm);
-  command->add_option("--hold-to-run", asked->hold_to_run, "Enable forces only while it is held")
+  command
+      ->add_option("--hold-to-run", asked->hold_to_run,
+                   "Enable forces only while this button is held")
       ->option_text("BUTTON")
       ->group(kArm);
   command
@@ -335,10 +337,12 @@ void add_exec_command(CLI::App& app, int& exit_code) {
                  "Run a real arm without real-time priority")
       ->group(kArm);
   constexpr const char* kRun = "Run";
-  command->add_option("--scene", options.scene, "Scene whose forces are added to the program's")
+  command
+      ->add_option("--scene", options.scene, "Scene whose forces are added to those of the program")
       ->option_text("NAME|FILE")
       ->group(kRun);
-  command->add_option("--hand", options.hand, "What moves the simulated hand: path, mouse or FILE")
+  command
+      ->add_option("--hand", options.hand, "Input that moves the simulated hand: path, mouse, FILE")
       ->option_text("SOURCE")
       ->capture_default_str()
       ->group(kRun);

@@ -76,8 +76,9 @@ void add_export_command(CLI::App& app, int& exit_code) {
       ->option_text("FILE");
   as->require_option(1, 3);
   add_example(*command, "thimble export touch.h5 --csv touch.csv",
-              "The bag has /pose, /wrench (as sent) and /wrench_wanted (before the gate).\n"
-              "The sound is that of `thimble view --sound`.");
+              "The topics of the bag are /pose, /wrench (force after the safety gate) and\n"
+              "/wrench_wanted (force before it).\n"
+              "--sound writes the sound that `thimble view --sound` plays.");
   command->callback([options, &exit_code] { exit_code = export_recording(*options); });
 }
 

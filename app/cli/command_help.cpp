@@ -62,12 +62,12 @@ void add_help_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "help", "List the keys of scene and arm files, with meaning, unit and limits");
   auto options = std::make_shared<HelpOptions>();
-  command->add_option("FILE", options->file, "Kind of file; schema: a JSON Schema for editors")
+  command->add_option("FILE", options->file, "Kind of file, or schema: a JSON Schema for editors")
       ->check(CLI::IsMember({"scene", "arm", "schema"}))
       ->capture_default_str();
   command->add_option("KEY", options->key,
-                      "Print only keys of this name; with schema: scene or arm");
-  command->add_flag("--page", options->page, "Print a page of the guide (Markdown)");
+                      "Key to print (default: all); after schema: scene or arm");
+  command->add_flag("--page", options->page, "Print the keys as a page of the guide (Markdown)");
   add_example(*command, "thimble help scene stiffness");
   command->callback([options, &exit_code] {
     exit_code = options->file == "schema" ? print_schema(*options) : print_keys(*options);

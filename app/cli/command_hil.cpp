@@ -324,7 +324,8 @@ void add_hil_command(CLI::App& app, int& exit_code) {
   command->choice.falls_back_to_simulation = false;
   command->choice.add_options(*sub);
   command->choice.add_real_time_option(*sub);
-  sub->add_flag("--require-device", command->require_device, "Exit with 3 unless the arm is real")
+  sub->add_flag("--require-device", command->require_device,
+                "Exit with code 3 unless the arm is real")
       ->group("Arm");
   constexpr const char* kChecks = "Checks";
   sub->add_option("--suite", command->suite, "quick: 2 to 3 minutes; full: over an hour")
@@ -335,7 +336,7 @@ void add_hil_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember(hil::hil_checks()))
       ->group(kChecks);
   sub->add_option("--soak", command->options.soak_minutes,
-                  "Duration of the soak, minutes (default 0.5; full: 60)")
+                  "Length of the soak test, min (default 0.5; full 60)")
       ->check(CLI::Range(0.1, 1440.0))
       ->group(kChecks);
   sub->add_option("--timeout", command->timeout, "Stop with zero force after N seconds")
@@ -345,14 +346,13 @@ void add_hil_command(CLI::App& app, int& exit_code) {
   sub->add_flag("--attended", command->options.attended,
                 "Also run the feel check, and checks that need a hand")
       ->group(kPerson);
-  sub->add_flag("--replug", command->options.replug, "Also ask to unplug the cable (--attended)")
+  sub->add_flag("--replug", command->options.replug,
+                "Also test an unplugged cable (with --attended)")
       ->group(kPerson);
-  sub->add_option("--spring", command->options.spring,
-                  "Stiffness of a spring on the tip, N/m (with --attended)")
+  sub->add_option("--spring", command->options.spring, "Stiffness of a spring on the tip, N/m")
       ->check(CLI::Range(50.0, 2000.0))
       ->group(kPerson);
-  sub->add_option("--known-mass", command->options.known_mass,
-                  "Mass fixed to the tip on request, kg")
+  sub->add_option("--known-mass", command->options.known_mass, "Mass to fix to the tip, kg")
       ->check(CLI::Range(0.005, 0.06))
       ->group(kPerson);
   sub->add_option("--known-length", command->options.known_length,
@@ -369,11 +369,11 @@ void add_hil_command(CLI::App& app, int& exit_code) {
   add_example(*sub, "thimble hil --suite quick --junit results.xml",
               "--check         A check that applies forces also runs the feel check.\n"
               "--timeout       Remaining checks count as not run (exit code 5).\n"
-              "--spring        You tie the spring to the tip when asked.\n"
+              "--spring        With --attended: tie the spring to the tip when asked.\n"
               "--known-mass    With --attended: checks the force in newtons, and whether the\n"
-              "                base is level.\n"
-              "--known-length  With --attended: checks counts, ratios and links. You move the\n"
-              "                tip from mark to mark when asked.");
+              "                base is level. Fix the mass to the tip when asked.\n"
+              "--known-length  With --attended: checks encoder counts, ratios and links. Move\n"
+              "                the tip from mark to mark when asked.");
   sub->callback([command, &exit_code] { exit_code = run_hil(*command); });
 }
 

@@ -16,6 +16,7 @@
 #include "bringup/identify/simulated_bench.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
+#include "cli/options/old_names.h"
 #include "cli/prompts/key_stop.h"
 #include "cli/prompts/yes_question.h"
 #include "cli/report_error.h"
@@ -258,35 +259,39 @@ int identify_arm(IdentifyCommand command) {
 
 void add_identify_command(CLI::App& app, int& exit_code) {
   CLI::App* sub = app.add_subcommand(
-      "identify", "Measure the mass, friction, gains, delay and cables of an arm");
+      "identify", "Measure mass, friction, gains, delay and cable stiffness of an arm");
   auto command = std::make_shared<IdentifyCommand>();
   command->options.places = 7;
   command->choice.add_options(*sub);
   command->choice.add_real_time_option(*sub);
   constexpr const char* kMotion = "Motion";
   sub->add_option("--known-mass", command->options.known_mass,
-                  "Mass that you fix to the tip for a second motion, kg")
+                  "Mass to fix to the tip for a second motion, kg")
       ->check(CLI::Range(0.0, 0.06))
       ->group(kMotion);
   sub->add_option("--seconds", command->options.seconds, "Duration of each motion, s")
       ->check(CLI::Range(10.0, 600.0))
       ->capture_default_str()
       ->group(kMotion);
-  sub->add_option("--places", command->options.places, "Poses for the link inertia; 0: none")
+  sub->add_option("--places", command->options.places,
+                  "Poses for measuring the link inertia; 0: none")
       ->check(CLI::Range(3, 9) | CLI::IsMember({0}))
       ->capture_default_str()
       ->group(kMotion);
-  sub->add_option("--force-most", command->options.max_force, "Largest force, N")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str()
-      ->group(kMotion);
+  CLI::Option* max_force =
+      sub->add_option("--max-force", command->options.max_force, "Largest force of the motion, N")
+          ->check(CLI::PositiveNumber)
+          ->capture_default_str()
+          ->group(kMotion);
+  add_old_name(*sub, "--force-most", max_force, command->options.max_force)
+      ->check(CLI::PositiveNumber);
   constexpr const char* kOutput = "Output";
   sub->add_option("--output", command->output, "New arm file (default: NAME_identified.yaml here)")
       ->option_text("FILE")
       ->group(kOutput);
   sub->add_flag("--yes", command->yes, "Write the arm file without asking")->group(kOutput);
   sub->add_flag("--write-bad-fit", command->write_bad_fit,
-                "Also write a bad fit, with each value marked BAD FIT")
+                "Also write constants of a bad fit, marked BAD FIT")
       ->group(kOutput);
   CLI::Option* record =
       sub->add_option("--record", command->record, "Record the motion of the bare tip (HDF5)")
@@ -295,18 +300,19 @@ void add_identify_command(CLI::App& app, int& exit_code) {
   sub->add_flag("--force", command->force, "Let --record replace an existing recording")
       ->needs(record)
       ->group(kOutput);
-  sub->add_option("--report", command->report, "Write a page with plots, constants and gaps")
+  sub->add_option("--report", command->report, "Write a page with plots and the measured constants")
       ->option_text("DIR")
       ->group(kOutput);
   add_example(*sub, "thimble identify --device auto --output my_arm.yaml",
-              "The arm moves by itself, by small forces.\n"
+              "The arm moves by itself, with small forces.\n"
               "--known-mass  Without it, only ratios of masses and forces are identified.\n"
-              "--places      Number of poses in the workspace that the tip visits afterwards.\n"
-              "--force-most  At most gate.force_max of the arm file.\n"
-              "--yes         Without it you are asked at a terminal. Without a terminal, the\n"
-              "              file is written only if --output is given.\n"
+              "--places      After the motion, the tip moves to these poses of its workspace.\n"
+              "--max-force   At most gate.force_max of the arm file.\n"
+              "--yes         Without it, the command asks at a terminal. Without a terminal,\n"
+              "              the file is written only with --output or --yes.\n"
               "--record      Use the recording with `thimble twin`.\n"
-              "--report      The page also lists what was not identified, and why.");
+              "--report      The page also lists the constants that were not identified, with\n"
+              "              the reasons.");
   sub->callback([command, &exit_code] { exit_code = identify_arm(*command); });
 }
 

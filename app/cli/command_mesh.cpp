@@ -297,7 +297,7 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
   command->add_option("--json", options->json, "Write the findings as JSON")->option_text("FILE");
   command
       ->add_option("--thicken", options->thicken,
-                   "Thickness of sheets for open parts (unit of the file)")
+                   "Give open parts this thickness (unit of the file)")
       ->check(CLI::PositiveNumber)
       ->needs("--repair");
   add_mesh_page_command(*command, exit_code);

@@ -48,7 +48,7 @@ int page_mesh(const PageOptions& options) {
 
 void add_mesh_page_command(CLI::App& mesh_command, int& exit_code) {
   CLI::App* command = mesh_command.add_subcommand(
-      "page", "Convert a mesh to a page file, which is loaded from disk in parts");
+      "page", "Convert a mesh to a page file, to load only pages near the tip");
   auto options = std::make_shared<PageOptions>();
   command->add_option("IN", options->in, std::string("Mesh: ") + render::kMeshEndings)->required();
   command->add_option("OUT", options->out, "Page file to write")->required();

@@ -262,17 +262,19 @@ std::string arm_list() {
 }
 
 constexpr const char* kPlugNotes =
-    "--hand     none, rest: keep the home pose; tap: up and down; stroke: a circle.\n"
+    "--hand     none: no hand after homing. rest: holds the home pose. tap: moves up\n"
+    "           and down. stroke: moves on a circle.\n"
     "--arm      Replaces torque constants, tip, weight, drive train, hand and wiring\n"
-    "           of the built-in arm. A driver does not have to know the file.\n"
+    "           of the built-in arm. The tested driver does not need the file.\n"
     "--serial   Default: that of the board (all mbed boards: 0123456789).\n"
     "--faults   One fault per line: KIND [in|out] [after=FRAMES] [for=FRAMES]\n"
     "           [rate=CHANCE]. KIND: stall, short, long, torn, stale, duplicate,\n"
     "           silence, bit_errors, unplug, lost.\n"
-    "--control  The pipe takes such lines, `heal`, `hand X Y Z` (m, along the axes\n"
-    "           of the base, from the start of the hand), `hand off`, `hand on` and\n"
-    "           `mass KG`.\n"
-    "--trace    The true state of the arm, one line per USB frame with packets.";
+    "--control  Commands: a fault as in --faults; `heal` (ends faults); `hand X Y Z`\n"
+    "           (m, along the axes of the base, from the start of the hand);\n"
+    "           `hand off`, `hand on` (let go of the tip, hold it); `mass KG`\n"
+    "           (fixed to the tip).\n"
+    "--trace    One line per USB frame with packets.";
 
 }  // namespace
 
@@ -283,17 +285,19 @@ void add_plug_command(CLI::App& app, int& exit_code) {
       ->required()
       ->check(CLI::Validator(check_arm_name, ""));
   constexpr const char* kConnection = "Connection";
-  command->add_flag("--attach", options->attach, "Attach it to this kernel (root, module vhci-hcd)")
+  command
+      ->add_flag("--attach", options->attach, "Attach it to this kernel (needs root and vhci-hcd)")
       ->group(kConnection);
-  command->add_option("--port", options->port, "TCP port; 0: any free port")
+  command->add_option("--port", options->port, "TCP port of the server; 0: any free port")
       ->capture_default_str()
       ->group(kConnection);
-  command->add_option("--listen", options->address, "Address; 0.0.0.0 allows other machines")
+  command->add_option("--listen", options->address, "Address of the server; 0.0.0.0: all networks")
       ->option_text("ADDRESS")
       ->capture_default_str()
       ->group(kConnection);
   constexpr const char* kArm = "Simulated arm";
-  add_arm_option(*command, options->arm_file, "Arm file whose constants are used")->group(kArm);
+  add_arm_option(*command, options->arm_file, "Arm file with the constants of the simulated arm")
+      ->group(kArm);
   command->add_option("--hand", options->motion, "Motion of the simulated hand")
       ->check(CLI::IsMember({"none", "rest", "tap", "stroke"}))
       ->capture_default_str()
@@ -306,17 +310,17 @@ void add_plug_command(CLI::App& app, int& exit_code) {
       ->group(kArm);
   command
       ->add_option("--firmware", options->firmware,
-                   "Only firmware that a Falcon accepts (default: any)")
+                   "Only firmware that the Falcon accepts (default: any)")
       ->option_text("FILE")
       ->group(kArm);
   constexpr const char* kTests = "Tests";
-  command->add_option("--faults", options->faults, "Script of USB faults")
+  command->add_option("--faults", options->faults, "File with USB faults to simulate")
       ->option_text("FILE")
       ->group(kTests);
   command->add_option("--control", options->control, "Create a named pipe for commands")
       ->option_text("PIPE")
       ->group(kTests);
-  command->add_option("--trace", options->trace, "Write the true state of the arm")
+  command->add_option("--trace", options->trace, "Write the true state of the simulated arm")
       ->option_text("FILE")
       ->group(kTests);
   add_example(*command, "thimble plug polhem --attach", arm_list() + "\n" + kPlugNotes);

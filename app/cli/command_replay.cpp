@@ -231,8 +231,7 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ReplayOptions>();
   command->add_option("FILE", options->files, "Recordings, a trajectory (text), or a ROS 2 bag")
       ->required();
-  add_scene_option(*command, options->scene, "--scene",
-                   "Scene to touch instead of the recorded one");
+  add_scene_option(*command, options->scene, "--scene", "Scene to use instead of the recorded one");
   command->add_flag("--verify", options->verify, "Fail unless all forces are bit-identical");
   constexpr const char* kOutput = "Output";
   CLI::Option* record = command->add_option("--record", options->record, "Record the replay (HDF5)")
@@ -241,15 +240,16 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   command->add_flag("--force", options->force, "Let --record replace an existing recording")
       ->needs(record)
       ->group(kOutput);
-  command->add_option("--page", options->page, "Write an HTML file that plays the replay")
+  command->add_option("--page", options->page, "Write an HTML page that plays the result")
       ->option_text("FILE")
       ->group(kOutput);
   constexpr const char* kTrajectory = "Trajectories";
-  command->add_option("--columns", options->form.columns, "Columns in their order; -: skipped")
+  command
+      ->add_option("--columns", options->form.columns, "Columns of the file in order; - skips one")
       ->option_text("LIST")
       ->capture_default_str()
       ->group(kTrajectory);
-  command->add_option("--length", options->length, "Unit of length in the world frame")
+  command->add_option("--length", options->length, "Unit of positions in the world frame")
       ->check(CLI::IsMember({"m", "mm"}))
       ->capture_default_str()
       ->group(kTrajectory);
@@ -261,27 +261,28 @@ void add_replay_command(CLI::App& app, int& exit_code) {
       ->option_text("NAME")
       ->group(kTrajectory);
   constexpr const char* kBags = "Bags";
-  command->add_option("--topic", options->bag.pose, "Positions (PoseStamped; default /pose)")
+  command->add_option("--topic", options->bag.pose, "Topic of the positions (PoseStamped)")
+      ->option_text("NAME")
+      ->group(kBags);
+  command->add_option("--wrench-topic", options->bag.wrench, "Topic of the forces (WrenchStamped)")
       ->option_text("NAME")
       ->group(kBags);
   command
-      ->add_option("--wrench-topic", options->bag.wrench, "Forces (WrenchStamped; default /wrench)")
-      ->option_text("NAME")
-      ->group(kBags);
-  command->add_option("--axes", options->axes, "Axes of the world, or of the Omni drivers")
+      ->add_option("--axes", options->axes, "Axes of positions: the world's, or the Omni drivers'")
       ->check(CLI::IsMember({"plain", "omni"}))
       ->capture_default_str()
       ->group(kBags);
-  command->add_option("--csv", options->csv, "Write a table of the replay")
+  command->add_option("--csv", options->csv, "Write the result as a table (CSV)")
       ->option_text("FILE")
       ->group(kBags);
   add_example(*command, "thimble replay touch.h5 --verify",
               "FILE      Recordings are from `thimble run SCENE --record FILE`, one per arm. A\n"
               "          trajectory has one line per probe position, with the force. A bag\n"
               "          (SQLite) is a folder or a .db3 file.\n"
-              "--verify  Also fails if scene or program are not those of the recording.\n"
-              "--frame   An object: positions in the frame and unit of its mesh file.\n"
-              "--topic, --wrench-topic  Default: the only topic of that type.");
+              "--verify  Also fails if the scene or the program differs from the recording's.\n"
+              "--frame   For an object, positions are in the frame and unit of its mesh file.\n"
+              "--topic, --wrench-topic  Default: the only topic of that type; if there are\n"
+              "          several, /pose and /wrench.");
   command->callback([options, &exit_code] { exit_code = replay_recordings(*options); });
 }
 

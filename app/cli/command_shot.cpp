@@ -228,23 +228,24 @@ void add_shot_command(CLI::App& app, int& exit_code) {
       ->needs(animate)
       ->check(CLI::Range(0.0, 86400.0))
       ->group(kOutput);
-  command->add_option("--pace", options->pace, "Pictures per second of the animation")
+  command->add_option("--pace", options->pace, "Frames per second of the animation")
       ->needs(animate)
       ->check(CLI::Range(1.0, 60.0))
       ->capture_default_str()
       ->group(kOutput);
-  command->add_option("--size", options->size, "Size in pixels")
+  command->add_option("--size", options->size, "Size of the picture in pixels")
       ->option_text("WIDTHxHEIGHT")
       ->capture_default_str()
       ->group(kOutput);
-  command->add_flag("--all-colours", options->all_colours, "Write all colours, not the best 256")
+  command
+      ->add_flag("--all-colours", options->all_colours, "Keep all colours instead of the best 256")
       ->group(kOutput);
   constexpr const char* kLook = "Look";
   command->add_option("--camera", options->camera, "Direction and zoom of the camera")
       ->option_text("YAW PITCH [ZOOM]")
       ->expected(2, 3)
       ->group(kLook);
-  command->add_option("--theme", options->theme, "Colour of the background")
+  command->add_option("--theme", options->theme, "Colour theme")
       ->check(CLI::IsMember({"light", "dark"}))
       ->capture_default_str()
       ->group(kLook);
@@ -252,7 +253,8 @@ void add_shot_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"phong", "gouraud"}))
       ->capture_default_str()
       ->group(kLook);
-  command->add_option("--edges", options->edges, "Outlines of polygons; auto: if there are few")
+  command
+      ->add_option("--edges", options->edges, "Draw outlines of polygons; auto: if there are few")
       ->check(CLI::IsMember({"auto", "on", "off"}))
       ->capture_default_str()
       ->group(kLook);
@@ -268,16 +270,18 @@ void add_shot_command(CLI::App& app, int& exit_code) {
       ->group(kShow);
   command->add_flag("--fields", options->fields, "Show the forces of fields as arrows")
       ->group(kShow);
-  command->add_flag("--trail", options->trail, "Show the last 4 s of the tip, coloured by force")
+  command
+      ->add_flag("--trail", options->trail,
+                 "Show the last 4 s of the tip's path, coloured by force")
       ->group(kShow);
   command->add_flag("--surfaces", options->surfaces, "Mark surfaces with texture or friction")
       ->group(kShow);
-  command->add_flag("--plots", options->plots, "Show force and depth over time below the scene")
+  command->add_flag("--plots", options->plots, "Plot force and depth over time below the picture")
       ->group(kShow);
   add_example(*command, "thimble shot elephant --at 2 --out elephant.png",
-              "--animate  From --at to --until; MP4 and GIF require ffmpeg, PNG is animated.\n"
-              "--camera   Degrees about z from the user, degrees above the horizon, and a zoom\n"
-              "           factor. By default the camera frames the scene.");
+              "--animate  From --at to --until. MP4 and GIF require ffmpeg; PNG is animated.\n"
+              "--camera   YAW: degrees about z, from the user's side. PITCH: degrees above the\n"
+              "           horizon. ZOOM: a factor. By default the camera frames the scene.");
   command->callback([options, &exit_code] { exit_code = take_shot(*options); });
 }
 

@@ -116,18 +116,20 @@ void add_tune_command(CLI::App& app, int& exit_code) {
           ->add_option("--spread", options->spread_us, "Standard deviation of the loop period, us")
           ->check(CLI::Range(0.0, 1e6))
           ->capture_default_str();
-  command->add_option("--measure", options->measure, "Measure that on this computer for N seconds")
+  command
+      ->add_option("--measure", options->measure,
+                   "Measure the spread on this computer for N seconds")
       ->check(CLI::Range(0.1, 600.0))
       ->excludes(spread);
   CLI::Option* topics = command->add_flag("--ros2", options->topics,
-                                          "Also compute the stiffest wall over ROS 2 topics");
+                                          "Also compute the stiffest wall for forces over ROS 2");
   command->add_option("--ros-domain", options->domain, "ROS_DOMAIN_ID of the measurement")
       ->check(CLI::Range(0, 232))
       ->capture_default_str()
       ->needs(topics);
   add_example(*command, "thimble tune elephant",
-              "--ros2 measures for 5 s the delay of forces that a program at the other end of\n"
-              "the topics computes (package thimble-ros2).");
+              "--ros2 measures the delay of forces that another program computes and sends\n"
+              "as a topic. This takes 5 s and requires the package thimble-ros2.");
   command->callback([options, &exit_code] { exit_code = tune_scene(*options); });
 }
 

@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/file_options.h"
+#include "cli/options/old_names.h"
 #include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "log/printed_text.h"
@@ -80,25 +81,29 @@ int compare(const TwinCommand& command) {
 void add_twin_command(CLI::App& app, int& exit_code) {
   CLI::App* sub = app.add_subcommand("twin", "Compare a recorded arm with its simulated twin");
   auto command = std::make_shared<TwinCommand>();
-  sub->add_option("FILE", command->recording, "Recording of an arm that no hand held")->required();
+  sub->add_option("FILE", command->recording, "Recording of an arm that moved without a hand")
+      ->required();
   add_arm_option(*sub, command->arm_file, "Arm file of the twin")->required();
   sub->add_option("--window", command->options.window, "Length of the compared segments, s")
       ->check(CLI::Range(0.05, 2.0))
       ->capture_default_str();
-  sub->add_option("--from", command->options.span.from, "Begin of the comparison, s")
+  sub->add_option("--from", command->options.span.from, "Start of the comparison, s")
       ->check(CLI::NonNegativeNumber);
   sub->add_option("--until", command->options.span.until, "End of the comparison, s")
       ->check(CLI::NonNegativeNumber);
-  sub->add_option("--fit-least", command->min_fit, "Smallest accepted fit of each axis, %")
-      ->check(CLI::Range(0.0, 100.0));
+  CLI::Option* min_fit =
+      sub->add_option("--min-fit", command->min_fit, "Smallest accepted fit of each axis, %")
+          ->check(CLI::Range(0.0, 100.0));
+  add_old_name(*sub, "--fit-least", min_fit, command->min_fit)->check(CLI::Range(0.0, 100.0));
   sub->add_option("--output", command->output, "Write figures.json and pictures to this folder")
       ->option_text("DIR");
   add_example(*sub, "thimble twin touch.h5 --arm my_arm.yaml",
-              "The recorded forces drive the simulated arm; both motions are compared.\n"
+              "The recorded forces drive the simulated arm. Its motion is compared with the\n"
+              "recorded one.\n"
               "FILE      From `thimble identify --record`, or a part (--from, --until) of a\n"
               "          recording from `thimble run SCENE --record`.\n"
-              "--window  Each segment begins in the recorded state.\n"
-              "--fit-least  The exit code is 5 if the fit of an axis is smaller.\n"
+              "--window  The simulated arm begins each segment in the recorded state.\n"
+              "--min-fit  The exit code is 5 if the fit of an axis is below it.\n"
               "--output  The pictures show motion, error and spectrum.");
   sub->callback([command, &exit_code] { exit_code = compare(*command); });
 }

@@ -293,7 +293,7 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
   CLI::App* command = app.add_subcommand("view", "Show a run of another process, or a recording");
   auto options = std::make_shared<ViewOptions>();
   command->add_option("RUN", options->shown,
-                      "Name of a run (default: the newest), or recordings (.h5)");
+                      "Run to show (default: the newest), or recordings (.h5)");
   constexpr const char* kViewing = "Viewing";
   command->add_flag("--list", options->list, "List the runs and their knobs, then exit")
       ->group(kViewing);
@@ -309,8 +309,7 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
       ->needs(web)
       ->group(kViewing);
   command
-      ->add_flag("--follow", options->follow,
-                 "With --text, --web: wait for the next run of that name")
+      ->add_flag("--follow", options->follow, "Wait for the next run of that name (--text, --web)")
       ->group(kViewing);
   command->add_option("--for", options->seconds, "Exit after N seconds")
       ->check(CLI::Range(0.1, 86400.0))
@@ -324,7 +323,7 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
   command->add_flag("--resume", options->resume, "Resume a paused run")
       ->excludes(pause)
       ->group(kControl);
-  command->add_option("--step", options->steps, "Advance a paused run by N ticks (simulated time)")
+  command->add_option("--step", options->steps, "Advance a paused run by N ticks")
       ->check(CLI::Range(std::uint64_t{1}, session::kStepsMax))
       ->group(kControl);
   command
@@ -362,15 +361,16 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
           ->group(kSave);
   command
       ->add_flag("--overwrite", options->overwrite,
-                 "With --save-knobs: overwrite your own scene file")
+                 "With --save-knobs: overwrite the scene file instead")
       ->needs(save)
       ->excludes(save_as)
       ->group(kSave);
   add_example(*command, "thimble view elephant --pause",
-              "A scene with several arms has one recording per arm; name all of them.\n"
+              "RUN  If the scene has several arms, name the recordings of all arms.\n"
               "--step, --speed, --restart and --scene require a simulated arm.\n"
-              "--save-knobs prints the new file. It is next to the scene file, or in your own\n"
-              "scenes folder for a scene that came with Thimble.");
+              "--save-knobs prints the path of the new file. It is next to the scene file; for\n"
+              "a scene that came with Thimble, it is in your own scenes folder.\n"
+              "--overwrite requires that the scene file is your own.");
   command->callback(
       [options, show_window, &exit_code] { exit_code = show(*options, show_window); });
 }

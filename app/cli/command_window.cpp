@@ -48,7 +48,7 @@ void add_window_command(CLI::App& app, int& exit_code) {
           [choice](const std::string& name) {
             choice->hand = view::hand_source_named(name).value_or(choice->hand);
           },
-          "What moves the hand of the run (default mouse)")
+          "Input that moves the hand of the run (default mouse)")
       ->check(CLI::IsMember(
           std::vector<std::string>(view::kHandSources.begin(), view::kHandSources.end())))
       ->excludes("--text")
@@ -56,8 +56,7 @@ void add_window_command(CLI::App& app, int& exit_code) {
   command->add_flag("--sound", choice->felt.sound, "Play the contact as sound")
       ->excludes("--text")
       ->group(kWindow);
-  command
-      ->add_flag("--rumble", choice->felt.rumble, "Rumble a gamepad in proportion to the contact")
+  command->add_flag("--rumble", choice->felt.rumble, "Play the contact as rumble of a gamepad")
       ->excludes("--text")
       ->group(kWindow);
   command->add_option("--at", choice->at, "Time at which a recording is first shown, s")

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "cli/options/old_names.h"
 #include "log/logger.h"
 #include "thimble/scene/build_info.h"
 
@@ -40,11 +41,12 @@ void add_log_options(CLI::App& program, const std::string& command_line) {
   program.add_option("--log", options->file, "Log file (default: see `thimble doctor`)")
       ->option_text("FILE");
   fall_through(program);
-  program.parse_complete_callback([options, command_line] {
+  program.parse_complete_callback([options, command_line, &program] {
     const auto begun = scene::begin_log({.verbosity = options->verbosity(),
                                          .file = options->file,
                                          .heading = scene::program_name() + ": " + command_line});
     if (!begun) throw CLI::ValidationError("--log", begun.error().message);
+    warn_of_old_names(program);
   });
 }
 

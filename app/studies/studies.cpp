@@ -16,7 +16,7 @@ constexpr std::array kStudies{
     Study{"friction", "limit cycles of friction models on coarse encoders", study_friction},
     Study{"texture", "spectrum of a stroke over each texture, compared with the requested waves",
           study_texture},
-    Study{"box", "Fig. 2 of the paper: the force over a square, for both kinds of box", study_box},
+    Study{"box", "force over a square for both kinds of box (Fig. 2 of the paper)", study_box},
     Study{"integrators", "cost per tick and error of each integrator of deformable bodies",
           study_integrators},
     Study{"accuracy", "error and cost of every approximation, on one page", nullptr},
@@ -24,7 +24,8 @@ constexpr std::array kStudies{
           "effects of the simulated arm that a scene does not need, and the time saved "
           "without them",
           nullptr},
-    Study{"stability", "stability limits of walls on an arm, by law and by simulation", nullptr},
+    Study{"stability", "stability limits of walls on an arm, by formula and by simulation",
+          nullptr},
     Study{"trouble",
           "thousands of random scenes and hands, checked for faults, energy and limit "
           "cycles",

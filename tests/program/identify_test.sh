@@ -60,13 +60,19 @@ most() { # FILE: the largest requested force, N
     END { m = sqrt(most); print n, (m > '"$2"' && m <= '"$3"') ? "within" : m }' "$1.csv"
 }
 for force in 0.5 2; do
-  expect 0 '' "$thimble" $brief --force-most $force --record "$force.h5" --output "$force.yaml"
+  expect 0 '' "$thimble" $brief --max-force $force --record "$force.h5" --output "$force.yaml"
 done
 expect_own 0 '^3 within$' most 0.5.h5 0.4 0.5
 expect_own 0 '^3 within$' most 2.h5 1 2
-expect_error 2 '6 N 5 gate.force_max' "$thimble" $brief --force-most 6
-expect_error 2 '0.2 N' "$thimble" $brief --force-most 0.1
-expect_words 2 'mass #' "$thimble" $brief --force-most 0.5 --known-mass 0.05
+expect_error 2 '6 N 5 gate.force_max' "$thimble" $brief --max-force 6
+expect_error 2 '0.2 N' "$thimble" $brief --max-force 0.1
+expect_words 2 'mass #' "$thimble" $brief --max-force 0.5 --known-mass 0.05
+expect 2 'max-force' "$thimble" $brief --max-force -1
+# The old name of the option still works, with a warning, and is not in the help.
+expect_words 0 '--force-most --max-force' "$thimble" $brief --force-most 0.5 --record old.h5 --output old.yaml
+expect_own 0 '^3 within$' most old.h5 0.4 0.5
 expect 2 'force-most' "$thimble" $brief --force-most -1
+expect_error 2 '--force-most --max-force' "$thimble" $brief --force-most 0.5 --max-force 0.5
+expect 1 '^0$' bash -c '"$0" identify --help | grep -c force-most' "$thimble"
 expect 2 'places' "$thimble" identify --device sim --arm vintage_phantom --places 2
 finish

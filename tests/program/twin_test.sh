@@ -7,7 +7,7 @@ expect_words 0 'free.h5' \
   "$thimble" identify --device sim --arm vintage_phantom --seconds 10 --places 0 --record free.h5 --output same.yaml
 expect_words 0 'free.csv # identify 1000' "$thimble" export free.h5 --csv free.csv
 expect 0 '' \
-  "$thimble" twin free.h5 --arm vintage_phantom --fit-least 95 --output same
+  "$thimble" twin free.h5 --arm vintage_phantom --min-fit 95 --output same
 expect 0 '^x +99\.' "$thimble" twin free.h5 --arm vintage_phantom
 expect 0 'True True True$' /usr/bin/python3 -c '
 import json
@@ -28,8 +28,11 @@ expect 0 '^none$' gain free.h5 --arm vintage_phantom
 # An arm file with too high a mass.
 sed 's/mass: 0\.075 /mass: 0.0975 /' "$arm" >heavy.yaml
 expect 5 '' \
-  "$thimble" twin free.h5 --arm heavy.yaml --fit-least 95 --from 2 --until 8
-expect 5 'fit_x' "$thimble" twin free.h5 --arm heavy.yaml --fit-least 95 --window 0.1
+  "$thimble" twin free.h5 --arm heavy.yaml --min-fit 95 --from 2 --until 8
+expect 5 'fit_x' "$thimble" twin free.h5 --arm heavy.yaml --min-fit 95 --window 0.1
+# The old name of the option still works, with a warning, and is not in the help.
+expect_words 5 '--fit-least --min-fit' "$thimble" twin free.h5 --arm heavy.yaml --fit-least 95 --window 0.1
+expect 1 '^0$' bash -c '"$0" twin --help | grep -c fit-least' "$thimble"
 expect 0 '^simulation\.tip\.mass 0\.07[45]' gain free.h5 --arm heavy.yaml --from 2 --until 8
 expect 0 '^simulation\.tip\.mass ' gain free.h5 --arm heavy.yaml
 

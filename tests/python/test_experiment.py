@@ -101,7 +101,7 @@ def test_staircase_step_by_step():
     assert staircase.reversals == [2, 3, 2] and staircase.over and staircase.condition() is None
     assert staircase.threshold == 2.5 and staircase.spread == pytest.approx(math.sqrt(0.5))
     # It stays within its bounds, and ends by the number of trials if its direction never changes.
-    staircase = experiment.Staircase(10, 4, down=1, lowest=0, trials_most=10)
+    staircase = experiment.Staircase(10, 4, down=1, lowest=0, max_trials=10)
     while staircase.condition() is not None:
         staircase.take({"correct": True})
     assert staircase.levels == [10, 6, 2] + [0] * 7
@@ -241,7 +241,7 @@ def test_constant_stimuli_fit_their_answers():
 
 
 @pytest.mark.parametrize(
-    "wrong, said",
+    "wrong, message",
     [
         (lambda: experiment.Staircase(1, 0), "step"),
         (lambda: experiment.Staircase(1, 0.5, multiply=True), "above 1"),
@@ -264,3 +264,19 @@ def test_constant_stimuli_fit_their_answers():
 def test_wrong_arguments_raise_a_clear_error(wrong, message):
     with pytest.raises(thimble.ArgumentError, match=message):
         wrong()
+
+
+def test_old_names_work_with_a_warning_that_gives_the_new_name():
+    with pytest.warns(DeprecationWarning, match="trials_most= is deprecated; use max_trials="):
+        staircase = experiment.Staircase(10, 4, trials_most=10)
+    assert staircase.plan() == experiment.Staircase(10, 4, max_trials=10).plan()
+    with pytest.warns(DeprecationWarning, match="says= is deprecated; use answer_key="):
+        stimuli = experiment.ConstantStimuli([1, 2], 3, says="rougher")
+    assert stimuli.answer_key == "rougher"
+    assert stimuli.plan() == experiment.ConstantStimuli([1, 2], 3, answer_key="rougher").plan()
+    with pytest.warns(DeprecationWarning, match="answer_key"):
+        assert stimuli.says == "rougher"
+    with pytest.raises(TypeError, match="max_trials"):
+        experiment.Staircase(10, 4, max_trials=20, trials_most=10)
+    with pytest.raises(TypeError, match="answer_key"):
+        experiment.ConstantStimuli([1, 2], 3, answer_key="rougher", says="rougher")

@@ -29,6 +29,14 @@ def test_knobs_are_listed_with_unit_bounds_and_value():
     assert "<td>ball: stiffness</td>" in knobs._repr_html_()
 
 
+def test_old_names_of_the_bounds_work_with_a_warning():
+    knob = thimble.Knob("ball: stiffness", "N/m", 10, 1000, 300)
+    with pytest.warns(DeprecationWarning, match="use Knob.min"):
+        assert knob.least == 10
+    with pytest.warns(DeprecationWarning, match="use Knob.max"):
+        assert knob.most == 1000
+
+
 def test_changes_of_knobs_repeat_bit_identically():
     plain = _stepped({}).ticks().columns.tobytes()
     assert plain == thimble.run("rubber", seconds=1.5).columns.tobytes()

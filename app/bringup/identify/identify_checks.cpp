@@ -58,7 +58,7 @@ std::vector<std::string> fit_warnings(const MassNormalisedFit& fit, const MassNo
   if (static_cast<double>(fit.left_out) > kLeftOutMax * all) {
     against.push_back(
         fmt::format("The tip was at rest for {:.0f} % of the motion: its friction is too high for "
-                    "the allowed force. Allow more with --force-most.",
+                    "the allowed force. Allow more with --max-force.",
                     100 * static_cast<double>(fit.left_out) / all));
   }
   return against;

@@ -191,7 +191,7 @@ class Probe {
   static driver::Error unmoved(int joint, double counts, double force) {
     return {fmt::format(
         "Motor {} moved its joint by only {:.0f} counts under {:g} N: the dry friction is higher "
-        "(--force-most allows more force), the tip is held, the joint sticks, or the motor is "
+        "(--max-force allows more force), the tip is held, the joint sticks, or the motor is "
         "dead. Let go of the grip and run `thimble feel-check`.",
         joint + 1, counts, force)};
   }

@@ -68,7 +68,7 @@ class Recorder {
     if (fault == driver::Fault::kCountsUnchanged) {
       said += fmt::format(
           " If the encoders count when you move the tip, its friction is too high for the allowed "
-          "{:g} N (--force-most).",
+          "{:g} N (--max-force).",
           max_force_);
     }
     return driver::Error{said};
@@ -175,7 +175,7 @@ class Recorder {
     if (!carried_W_.isZero(0)) {
       said += fmt::format(
           " Or the motors cannot carry the known mass with {:g} N: use a lighter mass, or allow "
-          "more force (--force-most).",
+          "more force (--max-force).",
           max_force_);
     }
     return driver::Error{said};

@@ -14,7 +14,7 @@ void add_ros_options(CLI::App& command, RosArguments& arguments, RosTime time) {
                           ->group(kTopic);
   command
       .add_option("--ros-namespace", arguments.words.name_space,
-                  "Namespace of the topics (omni: /phantom; else none)")
+                  "Namespace of the topics (default: none; omni: /phantom)")
       ->option_text("NAME")
       ->needs(ros2)
       ->group(kTopic);
@@ -30,12 +30,12 @@ void add_ros_options(CLI::App& command, RosArguments& arguments, RosTime time) {
       ->group(kTopic);
   command
       .add_flag("--ros-network", arguments.words.network,
-                "Allow other computers (topics, --ros-force)")
+                "Allow other computers to use topics and --ros-force")
       ->needs(ros2)
       ->group(kTopic);
   command
       .add_option("--ros-force", arguments.words.force,
-                  "Ignore, add or apply only the received force")
+                  "Ignore received forces, add them, or send only them")
       ->check(CLI::IsMember({"none", "add", "replace"}))
       ->capture_default_str()
       ->needs(ros2)
@@ -54,8 +54,7 @@ void add_ros_options(CLI::App& command, RosArguments& arguments, RosTime time) {
       ->needs(ros2)
       ->group(kTopic);
   command
-      .add_option("--ros-frames", arguments.words.frames,
-                  "Frame ids of world and tip, with a comma")
+      .add_option("--ros-frames", arguments.words.frames, "Frame ids of the world and of the tip")
       ->option_text("WORLD,TIP")
       ->capture_default_str()
       ->needs(ros2)

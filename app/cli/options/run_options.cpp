@@ -229,7 +229,7 @@ void add_time_options(CLI::App& command, RunOptions& options) {
 }
 
 void add_hand_options(CLI::App& command, RunOptions& options) {
-  command.add_option("--hand", options.hand, "What moves the simulated hand")
+  command.add_option("--hand", options.hand, "Input that moves the simulated hand")
       ->check(CLI::IsMember({"path", "mouse", "keyboard", "gamepad", "spacemouse", "topic"}))
       ->capture_default_str()
       ->group("Hand");
@@ -241,14 +241,14 @@ void add_viewing_options(CLI::App& command, RunOptions& options) {
       command.add_flag("--view", options.view, "Show the run in a window")->group(kViewing);
   CLI::Option* none = command
                           .add_flag("--no-view", options.no_view,
-                                    "Open no window, and do not offer the run to viewers")
+                                    "Open no window, and do not share the run with viewers")
                           ->excludes(view)
                           ->group(kViewing);
   command.get_option("--loop")->excludes(none);
   command
       .add_flag("--sound", options.sound, "Play the contact as sound (clicks, textures, friction)")
       ->group(kViewing);
-  command.add_flag("--rumble", options.rumble, "Rumble a gamepad in proportion to the contact")
+  command.add_flag("--rumble", options.rumble, "Play the contact as rumble of a gamepad")
       ->group(kViewing);
   command.add_option("--name", options.name, "Name for `thimble view NAME` (default: the scene's)")
       ->option_text("NAME")
@@ -290,25 +290,27 @@ void add_output_options(CLI::App& command, RunOptions& options) {
 }
 
 constexpr const char* kRunNotes =
-    "--device   A scene with several arms takes NAME=ARM for each real arm.\n"
-    "--homed    Only the workspace is checked then, not the pose of the tip.\n"
-    "--hold-to-run takes button (the first of the arm), button2 to button16, or key\n"
-    "           (the space bar, in this terminal or in the window).\n"
+    "--device   For a scene with several arms, write NAME=ARM for each real arm.\n"
+    "--homed    The tip must be in the workspace; its home pose is not checked.\n"
+    "--hold-to-run  INPUT: button (the first of the arm), button2 to button16, or\n"
+    "           key (the space bar, in this terminal or in the window).\n"
     "--clock    virtual and paced give bit-identical results; real arms use wall.\n"
     "           Default: wall with --ros2; paced with --view, --speed, or a hand\n"
     "           moved in the window; otherwise virtual.\n"
-    "--speed    Simulated arms only, as --loop and --reload. A viewer can change it.\n"
-    "--loop     Ends with Ctrl-C, by a viewer, or when the window of --view closes.\n"
-    "           Later recordings are named FILE-2.h5 and so on.\n"
+    "--speed    Can be changed in a viewer. --speed, --loop and --reload require\n"
+    "           simulated arms.\n"
+    "--loop     To end it: Ctrl-C, stop in a viewer, or close the window of --view.\n"
+    "           Later recordings are named FILE-2.h5, FILE-3.h5 and so on.\n"
     "--reload   Default with --view, or with a hand moved in the window.\n"
     "--hand     path: the path in the scene. mouse, keyboard, gamepad, spacemouse\n"
-    "           (3Dconnexion): in the window, until it is closed. topic: the ROS 2\n"
-    "           topic command/pose (crtk: servo_cp).\n"
-    "--sound, --rumble need the window.\n"
-    "--quality  Points on the diagrams of `thimble study accuracy`. auto: the\n"
-    "           cheapest point without a perceptible error; with --budget the most\n"
-    "           accurate one for all objects together, on the machine of the stored\n"
-    "           diagrams. The choices are printed.";
+    "           (3Dconnexion): input in the window; the run ends when it is closed.\n"
+    "           topic: the ROS 2 topic command/pose (crtk: servo_cp).\n"
+    "--sound, --rumble  Require the window.\n"
+    "--quality  draft: lowest cost; reference: errors below perception at any cost;\n"
+    "           auto: lowest cost with errors below perception. With --budget, auto\n"
+    "           is the highest accuracy within this time for all objects. Times and\n"
+    "           errors are stored results of `thimble study accuracy`, from another\n"
+    "           machine. The choices are printed.";
 
 }  // namespace
 

@@ -31,8 +31,8 @@ namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 done, 1 unexpected error, 2 invalid arguments or input, 3 no arm,\n"
-    "4 force switched off by a fault, 5 a figure, fit or check misses its goal or\n"
-    "did not run, 130 interrupted by Ctrl-C or SIGTERM.\n"
+    "4 force switched off by a fault, 5 a result misses its goal or a check did not\n"
+    "run, 130 interrupted by Ctrl-C or SIGTERM.\n"
     "A real arm moves by itself: keep clear of it, and keep its power switch within\n"
     "reach.";
 

@@ -53,8 +53,8 @@ void add_study_command(CLI::App& app, int& exit_code) {
     command->callback([&study, folder, &exit_code] { exit_code = run_study(study, *folder); });
   }
   add_example(*group, "thimble study friction --out friction",
-              "A study writes pictures, tables and figures.json. The exit code is 5 if a figure\n"
-              "misses its goal.");
+              "A study writes pictures, tables and figures.json (measured values). The exit\n"
+              "code is 5 if a value misses its goal.");
 }
 
 }  // namespace thimble::cli

@@ -114,28 +114,30 @@ void add_gating_options(CLI::App& command, int& exit_code) {
   command.add_option("--out", options->out, "Folder for gating.txt and figures.json")
       ->option_text("DIR")
       ->capture_default_str();
-  command.add_flag("--no-count", options->no_count, "Do not count instructions");
+  command.add_flag("--no-count", options->no_count,
+                   "Compare times only, without instruction counts");
   command.callback([options, &exit_code] { exit_code = run_gating(*options); });
 }
 
 void add_accuracy_options(CLI::App& command, int& exit_code) {
   auto options = std::make_shared<AccuracyOptions>();
-  command.add_option("--axis", options->axes, "Axes to measure, e.g. velocity (default: all)")
+  command.add_option("--axis", options->axes, "Parameters to vary, e.g. velocity (default: all)")
       ->option_text("NAME ...");
   command.add_option("--out", options->out, "Folder for the page, pictures and tables")
       ->option_text("DIR")
       ->capture_default_str();
   command
-      .add_option("--table", options->table,
-                  "Only write the table for --quality auto of this machine")
+      .add_option("--table", options->table, "Only write the table of --quality auto (see below)")
       ->option_text("FILE");
   command.add_flag("--no-count", options->no_count,
                    "Compare times only, without instruction counts");
-  command.add_flag("--resume", options->resume, "Continue an interrupted run of the same options");
+  command.add_flag("--resume", options->resume,
+                   "Continue an interrupted run with the same options");
   add_example(command, "thimble study accuracy --axis tessellation velocity",
-              "--table writes the points from which `thimble run --quality auto` chooses, in the\n"
-              "form of app/scene/src/quality/quality_table.inc. Counting instructions takes\n"
-              "minutes.");
+              "--table measures on this machine the cost and error of the settings from which\n"
+              "`thimble run --quality auto` chooses. The file has the format of\n"
+              "app/scene/src/quality/quality_table.inc.\n"
+              "Without --no-count, the study takes minutes longer.");
   command.callback([options, &exit_code] { exit_code = run_accuracy(*options); });
 }
 

@@ -29,7 +29,7 @@ struct SweepChoice {
     command.add_option("--jobs", jobs, "Threads per process; 0: one per core")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
-    command.add_flag("--resume", resume, "Continue an interrupted run of the same options");
+    command.add_flag("--resume", resume, "Continue an interrupted run with the same options");
   }
 };
 
@@ -68,16 +68,15 @@ void add_stability_options(CLI::App& command, int& exit_code) {
   command.add_option("--rate", options->rate, "Rate of the servo loop, Hz")
       ->check(CLI::Range(100, 20'000))
       ->capture_default_str();
-  command
-      .add_option("--hand", options->hand, "arm (from its file), none, or values in kg, N/m, N s/m")
+  command.add_option("--hand", options->hand, "Hand: arm (from its file), none, or kg, N/m, N s/m")
       ->option_text("MASS,STIFFNESS,DAMPING")
       ->capture_default_str();
   command
       .add_option("--direction", options->direction,
-                  "Normal of the wall, world (default: worst base axis)")
+                  "World normal of the wall (default: worst base axis)")
       ->option_text("X Y Z")
       ->expected(3);
-  command.add_flag("--coarse", options->coarse, "Fewer points: seconds instead of a minute");
+  command.add_flag("--coarse", options->coarse, "Use fewer points: seconds instead of a minute");
   command.callback([choice, options, &exit_code] {
     exit_code = run_by_sweep(
         *choice, [&](const studies::SweepOptions& sweep, const std::atomic<bool>& stop) {

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <utility>
 
+#include "cli/options/old_names.h"
+
 namespace thimble::cli {
 namespace {
 
@@ -87,7 +89,7 @@ std::vector<HelpTopic> help_topics(const CLI::App& command) {
   std::vector<HelpTopic> topics;
   const auto is_option = [](const CLI::Option* option) { return option->nonpositional(); };
   for (const std::string& group : command.get_groups()) {
-    if (group.empty()) continue;  // hidden options
+    if (group.empty() || group == kOldNames) continue;  // hidden options
     HelpTopic topic{group, command.get_options([&](const CLI::Option* option) {
                       return option->get_group() == group && is_option(option);
                     })};

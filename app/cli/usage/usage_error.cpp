@@ -10,6 +10,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "cli/options/old_names.h"
 #include "text/nearest_word.h"
 
 namespace thimble::cli {
@@ -46,6 +47,7 @@ std::vector<std::string> commands_below(const CLI::App& command) {
 /// Adds the names of the options of a command and of its option groups.
 void add_option_names(const CLI::App& command, std::vector<std::string>& names) {
   for (const CLI::Option* option : command.get_options()) {
+    if (option->get_group() == kOldNames) continue;
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     for (const std::string& name : option->get_snames()) names.push_back("-" + name);
   }

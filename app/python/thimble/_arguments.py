@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Optional, Union
+import warnings
+from typing import Any, Optional, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +13,7 @@ from ._core import ArgumentError
 
 PathOrName = Union[str, "os.PathLike[str]"]
 Vector = NDArray[np.float64]
+Value = TypeVar("Value")
 
 _MAX_SEED = 2**64 - 1  # limit of the program's type
 
@@ -62,6 +64,24 @@ def rows_of(name: str, value: ArrayLike, rows: int, finite: bool = True) -> Vect
     if np.shape(value) == (3,):
         return np.tile(vector_of(name, value, finite), (rows, 1))
     return _array(name, value, (rows, 3), f"the shape ({rows}, 3) or (3,)", finite)
+
+
+def warn_renamed(old: str, new: str) -> None:
+    """Warn the caller of the calling function that it used an old name."""
+    warnings.warn(f"{old} is deprecated; use {new}.", DeprecationWarning, stacklevel=3)
+
+
+def renamed(old: str, old_value: Optional[Value], new: str, value: Value, default: Value) -> Value:
+    """Return the value of a renamed argument, given by its old or its new name.
+
+    Raises TypeError if it is given by both.
+    """
+    if old_value is None:
+        return value
+    if value != default:
+        raise TypeError(f"{old}: is the old name of {new}, which is given too; keep {new}.")
+    warnings.warn(f"{old}= is deprecated; use {new}=.", DeprecationWarning, stacklevel=3)
+    return old_value
 
 
 def _array(name: str, value: ArrayLike, shape: tuple[int, ...], meant: str, finite: bool) -> Vector:

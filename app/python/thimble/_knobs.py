@@ -7,7 +7,7 @@ from html import escape
 from typing import Any, Iterator, NamedTuple
 
 from . import _core
-from ._arguments import number_of
+from ._arguments import number_of, warn_renamed
 from ._core import ArgumentError
 
 
@@ -19,6 +19,18 @@ class Knob(NamedTuple):
     min: float
     max: float
     value: float
+
+    @property
+    def least(self) -> float:
+        """Former name of `min`; deprecated."""
+        warn_renamed("Knob.least", "Knob.min")
+        return self.min
+
+    @property
+    def most(self) -> float:
+        """Former name of `max`; deprecated."""
+        warn_renamed("Knob.most", "Knob.max")
+        return self.max
 
 
 class Knobs:

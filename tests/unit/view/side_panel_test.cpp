@@ -42,13 +42,13 @@ class SidePanel : public Screenless {
   }
 };
 
-session::SharedScene::Knob knob(double least, double most) {
+session::SharedScene::Knob knob(double min, double max) {
   session::SharedScene::Knob made;
   made.name = "one";
   made.unit = "m";
-  made.least = least;
-  made.most = most;
-  made.initial = least;
+  made.min = min;
+  made.max = max;
+  made.initial = min;
   return made;
 }
 

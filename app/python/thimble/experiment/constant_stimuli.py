@@ -7,6 +7,7 @@ from typing import Any, Mapping, Optional, Sequence, Union
 import numpy as np
 
 from .. import ArgumentError
+from .._arguments import renamed, warn_renamed
 from .order import Trials
 from .psychometric import Array, Psychometric, count, fit
 
@@ -23,18 +24,27 @@ class ConstantStimuli(Trials):
         order: str = "blocks",
         seed: int = 0,
         subject: Optional[int] = None,
+        says: Optional[str] = None,
     ) -> None:
         """Create the trials.
 
         levels: in any unit. repeats: trials of each level.
         answer_key: key of the answer whose value is True or False; True is more frequent at higher levels.
         order, seed, subject: as in :class:`Trials`; "balanced" needs the subject.
+        says: deprecated; former name of answer_key.
         """
+        answer_key = renamed("says", says, "answer_key", answer_key, "correct")
         each = {"level": [float(one) for one in levels]}
         super().__init__(each, repeats=repeats, order=order, seed=seed, subject=subject)
         self.answer_key = answer_key
         self._levels: list[float] = []
         self._answers: list[bool] = []
+
+    @property
+    def says(self) -> str:
+        """Former name of `answer_key`; deprecated."""
+        warn_renamed("ConstantStimuli.says", "ConstantStimuli.answer_key")
+        return self.answer_key
 
     def check(self, answer: Mapping[str, Any]) -> None:
         """Raise ArgumentError if an answer lacks the key."""

@@ -7,6 +7,7 @@ from typing import Any, Mapping, Optional, Sequence, Union
 import numpy as np
 
 from .. import ArgumentError
+from .._arguments import renamed
 
 
 class Staircase:
@@ -31,6 +32,7 @@ class Staircase:
         reversals: int = 12,
         last: int = 8,
         max_trials: int = 400,
+        trials_most: Optional[int] = None,
     ) -> None:
         """Create a staircase at its first level.
 
@@ -39,7 +41,9 @@ class Staircase:
         (above 1), and averages are those of logarithms. up_ratio: size of a step up, in steps down.
         lowest, highest: bounds of the level. reversals, max_trials: the staircase ends after this number
         of reversals or of trials. last: number of last reversals whose mean is the threshold.
+        trials_most: deprecated; former name of max_trials.
         """
+        max_trials = renamed("trials_most", trials_most, "max_trials", max_trials, 400)
         self._steps = [float(one) for one in np.atleast_1d(np.asarray(step, dtype=np.float64))]
         smallest = 1.0 if multiply else 0.0
         if not self._steps or not all(np.isfinite(one) and one > smallest for one in self._steps):

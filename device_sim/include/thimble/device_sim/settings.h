@@ -50,6 +50,8 @@ struct MotorSettings {
 struct MotorHeatSettings {
   /// Largest allowed rise, K; copper melts at a rise of about 1060.
   static constexpr double kRiseMax = 1000;
+  /// Former name of kRiseMax.
+  [[deprecated("renamed to kRiseMax")]] static constexpr double kRiseMost = kRiseMax;
 
   /// Final temperature rise of a winding above ambient at the continuous current, K.
   double rise = 0;
@@ -100,6 +102,10 @@ struct DriveTrainSettings {
   /// safe.
   bool has_joint_friction() const noexcept {
     return !compliant() && !(viscous.isZero(0) && coulomb.isZero(0));
+  }
+  /// Former name of `has_joint_friction`.
+  [[deprecated("renamed to has_joint_friction")]] bool joints_rub() const noexcept {
+    return has_joint_friction();
   }
   /// Returns whether there is anything to simulate. Real-time: safe.
   bool named() const noexcept {

@@ -32,6 +32,9 @@ struct VendorPoseArm {
   }
 };
 
+/// Former name of VendorPoseArm.
+using ToldArm [[deprecated("renamed to VendorPoseArm")]] = VendorPoseArm;
+
 /// Arm geometries that Thimble supports. To add one, add a type here and a row of `kArmShapes`
 /// (arm_table.h). The compiler then reports every place that must handle it.
 using ArmGeometry = std::variant<SerialArm, LinkageArm, DeltaArm, VendorPoseArm>;

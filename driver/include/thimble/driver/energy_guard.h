@@ -43,6 +43,8 @@ struct EnergyGuardSettings {
   /// Delay from sampling to force in addition to the hold, ticks, 0 to kDelayMax.
   int delay_ticks = 0;
   static constexpr int kDelayMax = 15;  ///< Largest delay that the stage can handle, ticks.
+  /// Former name of kDelayMax.
+  [[deprecated("renamed to kDelayMax")]] static constexpr int kDelayMost = kDelayMax;
 };
 
 /// Energy flow at the motors since the previous tick, computed by the device.

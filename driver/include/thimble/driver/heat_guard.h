@@ -54,6 +54,8 @@ class THIMBLE_EXPORT HeatGuard {
   const std::array<double, 3>& heat() const noexcept { return heat_; }
   /// Returns the largest heat that any motor has reached.
   double max_heat() const noexcept { return max_heat_; }
+  /// Former name of `max_heat`.
+  [[deprecated("renamed to max_heat")]] double heat_most() const noexcept { return max_heat(); }
   /// Returns the number of ticks in which a force was scaled down because of heat.
   std::uint64_t lowered() const noexcept { return lowered_; }
 

@@ -48,6 +48,16 @@ struct GateLimits {
   /// Largest speed limit, m/s [chosen: twice what a hand reaches in a throw M].
   static constexpr double kSpeedMax = 20;
 
+  /// Former names of the six limits above.
+  [[deprecated("renamed to kSoftStartMin")]] static constexpr double kSoftStartLeast =
+      kSoftStartMin;
+  [[deprecated("renamed to kRiseMax")]] static constexpr double kRiseMost = kRiseMax;
+  [[deprecated("renamed to kRiseTimeMin")]] static constexpr double kRiseTimeLeast = kRiseTimeMin;
+  [[deprecated("renamed to kWatchdogMax_ns")]] static constexpr std::int64_t kWatchdogMost_ns =
+      kWatchdogMax_ns;
+  [[deprecated("renamed to kForceMax")]] static constexpr double kForceMost = kForceMax;
+  [[deprecated("renamed to kSpeedMax")]] static constexpr double kSpeedMost = kSpeedMax;
+
   double force_max = 0;  ///< Largest force, N. Must be finite and > 0.
   double speed_max = 0;  ///< Tip speed above which the force is switched off until a restart, m/s.
   /// Fastest change of the force vector, N/s. A decrease of its magnitude is never slowed, and an

@@ -58,7 +58,9 @@ class THIMBLE_EXPORT ObjectTouch {
   // The following functions are for observers; bodies (render/src/body) override them.
 
   /// Returns whether the surface is at its initial place: neither moved nor deformed.
-  virtual bool is_static() const noexcept { return true; }
+  virtual bool is_static() const noexcept;
+  /// Former name of `is_static`, which calls it: programs may still override it.
+  [[deprecated("renamed to is_static")]] virtual bool stands_still() const noexcept { return true; }
   /// Returns the number of contacts that ended with the tip inside; 0 for an object at rest, whose
   /// lost contacts can be found afterwards. Real-time: safe.
   virtual std::uint64_t lost_contacts() const noexcept { return 0; }
@@ -76,6 +78,13 @@ class THIMBLE_EXPORT ObjectTouch {
     place_now(vertices);
   }
 };
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
+inline bool ObjectTouch::is_static() const noexcept {
+  return stands_still();
+}
+#pragma GCC diagnostic pop
 
 /// Force law of one contact with the surface stages of a scene, combined at compile time: an unused
 /// stage costs nothing. It has no virtual interface, unlike ObjectTouch.

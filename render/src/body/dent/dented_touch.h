@@ -30,6 +30,7 @@ class DentedTouch final : public ObjectTouch {
   bool inside(const Eigen::Vector3d& p_W) const noexcept override { return inner_->inside(p_W); }
   const ContactMesh* mesh() const noexcept override { return &dent_.mesh(); }
   bool is_static() const noexcept override { return inner_->is_static(); }
+  bool stands_still() const noexcept override { return is_static(); }  // deprecated
   std::uint64_t lost_contacts() const noexcept override { return inner_->lost_contacts(); }
   const BodyShape* shape() const noexcept override { return inner_->shape(); }
   /// Moves the vertices from their base points to their present places.

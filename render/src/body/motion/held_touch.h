@@ -51,6 +51,7 @@ class HeldTouch final : public ObjectTouch {
   const ContactMesh* mesh() const noexcept override { return object_->mesh(); }
   bool draw(BodyPatch& patch) noexcept override { return object_->draw(patch); }
   bool is_static() const noexcept override { return false; }
+  bool stands_still() const noexcept override { return is_static(); }  // deprecated
   std::uint64_t lost_contacts() const noexcept override { return object_->lost_contacts(); }
   BodyPose pose() const noexcept override { return object_->pose(); }
   const BodyShape* shape() const noexcept override { return object_->shape(); }

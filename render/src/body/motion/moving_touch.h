@@ -87,6 +87,7 @@ class MovingTouch final : public ObjectTouch {
     return surface_->inside(motion_.R_WB().transpose() * (p_W - motion_.p_WB()));
   }
   bool is_static() const noexcept override { return false; }
+  bool stands_still() const noexcept override { return is_static(); }  // deprecated
   std::uint64_t lost_contacts() const noexcept override { return lost_; }
   BodyPose pose() const noexcept override {
     const Eigen::Quaterniond q(motion_.R_WB());

@@ -41,6 +41,7 @@ class ShapedTouch final : public ObjectTouch {
   }
   const ContactMesh* mesh() const noexcept override { return &stages_.contact().mesh(); }
   bool is_static() const noexcept override { return false; }
+  bool stands_still() const noexcept override { return is_static(); }  // deprecated
   std::uint64_t lost_contacts() const noexcept override { return lost_; }
   void place_now(std::span<Eigen::Vector3d> vertices) const noexcept override {
     const auto& mesh = stages_.contact().mesh();

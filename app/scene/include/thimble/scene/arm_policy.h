@@ -60,4 +60,22 @@ THIMBLE_EXPORT driver::Result<ArmPolicy> find_arm_policy(const driver::FoundArm&
 THIMBLE_EXPORT driver::Result<std::vector<std::string>> apply_arm_policy(
     Scene& scene, const std::filesystem::path& scene_file, const ArmPolicy& policy);
 
+/// Former name of ArmPolicy.
+using RealArmTerms [[deprecated("renamed to ArmPolicy")]] = ArmPolicy;
+
+/// Former name of ArmPolicyRequest.
+using RealArmRequest [[deprecated("renamed to ArmPolicyRequest")]] = ArmPolicyRequest;
+
+/// Former name of `find_arm_policy`. Real-time: never from the servo thread.
+[[deprecated("renamed to find_arm_policy")]] inline driver::Result<ArmPolicy> terms_for(
+    const driver::FoundArm& arm, const ArmPolicyRequest& request) {
+  return find_arm_policy(arm, request);
+}
+
+/// Former name of `apply_arm_policy`. Real-time: never from the servo thread.
+[[deprecated("renamed to apply_arm_policy")]] inline driver::Result<std::vector<std::string>>
+put_on_terms(Scene& scene, const std::filesystem::path& scene_file, const ArmPolicy& policy) {
+  return apply_arm_policy(scene, scene_file, policy);
+}
+
 }  // namespace thimble::scene

@@ -243,6 +243,10 @@ class THIMBLE_EXPORT Session {
   /// Returns warnings to show the user: mesh repairs, omissions and assumptions. For a real arm,
   /// they also state which limits of the scene were kept or ignored.
   const std::vector<std::string>& warnings() const noexcept;
+  /// Former name of `warnings`.
+  [[deprecated("renamed to warnings")]] const std::vector<std::string>& told() const noexcept {
+    return warnings();
+  }
 
   /// Returns the newest tick. Any thread may load it.
   const driver::Snapshot<driver::TickRecord>& newest(std::size_t arm = 0) const noexcept;

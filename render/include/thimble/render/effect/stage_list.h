@@ -23,7 +23,11 @@ class THIMBLE_EXPORT AnyStage {
   virtual void touch(const driver::DeviceState& state, SurfaceResponse& response) noexcept = 0;
   virtual void leave() noexcept = 0;
   /// Returns whether the stage is a ClosestPointStage, which must be run by `touch_at`.
-  virtual bool needs_closest_point() const noexcept { return false; }
+  virtual bool needs_closest_point() const noexcept;
+  /// Former name of `needs_closest_point`, which calls it: programs may still override it.
+  [[deprecated("renamed to needs_closest_point")]] virtual bool needs_foot() const noexcept {
+    return false;
+  }
   /// See ClosestPointStage; other stages run `touch`. Real-time: safe.
   virtual void touch_at(const ClosestSurfacePoint&, const driver::DeviceState& state,
                         SurfaceResponse& response) noexcept {
@@ -32,6 +36,13 @@ class THIMBLE_EXPORT AnyStage {
   /// See LiveSettings. Real-time: never from the servo thread.
   virtual void list_settings(LiveSettings& settings) = 0;
 };
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
+inline bool AnyStage::needs_closest_point() const noexcept {
+  return needs_foot();
+}
+#pragma GCC diagnostic pop
 
 /// AnyStage that wraps a surface stage.
 template <SurfaceStage Stage>
@@ -44,6 +55,7 @@ class AnyStageOf final : public AnyStage {
   }
   void leave() noexcept override { stage_.leave(); }
   bool needs_closest_point() const noexcept override { return ClosestPointStage<Stage>; }
+  bool needs_foot() const noexcept override { return ClosestPointStage<Stage>; }  // deprecated
   void touch_at(const ClosestSurfacePoint& closest, const driver::DeviceState& state,
                 SurfaceResponse& response) noexcept override {
     if constexpr (ClosestPointStage<Stage>) {
@@ -84,6 +96,10 @@ class StageList {
     return std::any_of(stages_.begin(), stages_.end(),
                        [](const auto& stage) { return stage->needs_closest_point(); });
   }
+  /// Former name of `needs_closest_point`.
+  [[deprecated("renamed to needs_closest_point")]] bool needs_foot() const noexcept {
+    return needs_closest_point();
+  }
 
  protected:
   std::vector<std::unique_ptr<AnyStage>> stages_;  ///< Stages in the order of execution.
@@ -108,5 +124,8 @@ class ClosestPointStageList : public StageList {
  private:
   ClosestPointFollower place_;
 };
+
+/// Former name of ClosestPointStageList.
+using FootStageList [[deprecated("renamed to ClosestPointStageList")]] = ClosestPointStageList;
 
 }  // namespace thimble::render

@@ -85,6 +85,7 @@ class THIMBLE_EXPORT ModelTouch final : public ObjectTouch {
   /// Returns false: only the surface near the tip is known.
   bool inside(const Eigen::Vector3d&) const noexcept override { return false; }
   bool is_static() const noexcept override { return false; }
+  bool stands_still() const noexcept override { return is_static(); }  // deprecated
 
   /// Returns the age of the rendered model; from any thread.
   ModelAge age() const noexcept { return age_.load(std::memory_order_relaxed); }

@@ -49,6 +49,9 @@ struct ClosestSurfacePoint {
   }
 };
 
+/// Former name of ClosestSurfacePoint.
+using SurfaceFoot [[deprecated("renamed to ClosestSurfacePoint")]] = ClosestSurfacePoint;
+
 /// Returns the closest point on the plane through the proxy: exact if the surface is flat.
 /// Real-time: safe.
 inline ClosestSurfacePoint flat_closest_point(const ContactState& contact) noexcept {
@@ -58,6 +61,12 @@ inline ClosestSurfacePoint flat_closest_point(const ContactState& contact) noexc
           .fall_W = contact.n_W};
 }
 
+/// Former name of `flat_closest_point`. Real-time: safe.
+[[deprecated("renamed to flat_closest_point")]] inline ClosestSurfacePoint flat_foot(
+    const ContactState& contact) noexcept {
+  return flat_closest_point(contact);
+}
+
 /// Returns the closest point from a `Contact` stage of ContactForceLaw, or the flat one if the
 /// stage provides none. Precondition: its last `update` was at `p_WT` (W, m) and touches.
 /// Real-time: safe.
@@ -65,9 +74,18 @@ template <class Contact>
 ClosestSurfacePoint closest_point_of(const Contact& contact, const Eigen::Vector3d& p_WT) noexcept {
   if constexpr (requires { contact.closest(p_WT); }) {
     return contact.closest(p_WT);
+  } else if constexpr (requires { contact.foot(p_WT); }) {
+    return contact.foot(p_WT);  // deprecated: former name of `closest` in stages of programs
   } else {
     return flat_closest_point(contact.state());
   }
+}
+
+/// Former name of `closest_point_of`. Real-time: safe.
+template <class Contact>
+[[deprecated("renamed to closest_point_of")]] ClosestSurfacePoint foot_of(
+    const Contact& contact, const Eigen::Vector3d& p_WT) noexcept {
+  return closest_point_of(contact, p_WT);
 }
 
 /// SurfaceStage that depends on the position on the surface: a texture. ContactForceLaw computes
@@ -78,6 +96,10 @@ concept ClosestPointStage = requires(Stage stage, const ClosestSurfacePoint& clo
   { stage.touch_at(closest, state, response) }
   noexcept->std::same_as<void>;
 };
+
+/// Deprecated: former name of ClosestPointStage. A concept cannot warn.
+template <class Stage>
+concept FootStage = ClosestPointStage<Stage>;
 
 /// Position at which textures are evaluated: the closest point, as long as it moves no faster than
 /// the tip's path allows.
@@ -122,5 +144,8 @@ class ClosestPointFollower {
   Eigen::Vector3d p_WT_{0, 0, 0};
   Eigen::Vector3d p_M_{0, 0, 0};
 };
+
+/// Former name of ClosestPointFollower.
+using FootFollower [[deprecated("renamed to ClosestPointFollower")]] = ClosestPointFollower;
 
 }  // namespace thimble::render
