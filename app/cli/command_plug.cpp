@@ -310,7 +310,7 @@ void add_plug_command(CLI::App& app, int& exit_code) {
       ->group(kArm);
   command
       ->add_option("--firmware", options->firmware,
-                   "Only firmware that the Falcon accepts (default: any)")
+                   "Accept only this firmware (Falcon; default: any)")
       ->option_text("FILE")
       ->group(kArm);
   constexpr const char* kTests = "Tests";

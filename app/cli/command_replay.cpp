@@ -279,6 +279,7 @@ void add_replay_command(CLI::App& app, int& exit_code) {
               "FILE      Recordings are from `thimble run SCENE --record FILE`, one per arm. A\n"
               "          trajectory has one line per probe position, with the force. A bag\n"
               "          (SQLite) is a folder or a .db3 file.\n"
+              "--scene   Required for a trajectory or a bag.\n"
               "--verify  Also fails if the scene or the program differs from the recording's.\n"
               "--frame   For an object, positions are in the frame and unit of its mesh file.\n"
               "--topic, --wrench-topic  Default: the only topic of that type; if there are\n"

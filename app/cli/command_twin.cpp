@@ -103,7 +103,8 @@ void add_twin_command(CLI::App& app, int& exit_code) {
               "FILE      From `thimble identify --record`, or a part (--from, --until) of a\n"
               "          recording from `thimble run SCENE --record`.\n"
               "--window  The simulated arm begins each segment in the recorded state.\n"
-              "--min-fit  The exit code is 5 if the fit of an axis is below it.\n"
+              "--min-fit  A fit of 100 % is the same motion; 0 % is no better than a straight\n"
+              "          line. The exit code is 5 if the fit of an axis is smaller.\n"
               "--output  The pictures show motion, error and spectrum.");
   sub->callback([command, &exit_code] { exit_code = compare(*command); });
 }

@@ -90,7 +90,7 @@ struct DriveTrainSettings {
   Eigen::Vector3d play{0, 0, 0};     ///< Full width of the backlash, rad at the joint.
   /// Viscous friction of each joint, N m s/rad; with a compliant cable that of the motor side.
   Eigen::Vector3d viscous{0, 0, 0};
-  /// Dry friction, N m at the joint; with a compliant cable that of the motor side.
+  /// Coulomb friction, N m at the joint; with a compliant cable that of the motor side.
   Eigen::Vector3d coulomb{0, 0, 0};
   /// Heating of the motors; by default their torque does not change.
   MotorHeatSettings heat{};
@@ -208,7 +208,7 @@ struct WireSettings {
 
 /// A complete simulated arm.
 struct SimulatedArmSettings {
-  PlantSettings plant;                ///< Mass, friction and stops of the arm.
+  PlantSettings plant;                ///< Mass and friction of the arm.
   HandSettings hand;                  ///< Hand that holds the tip.
   MotorSettings motors;               ///< Motors and amplifiers.
   DriveTrainSettings drive_train{};   ///< Drive train between motors and links.

@@ -28,16 +28,16 @@ class GatedForce {
   Eigen::Vector3d f_T_W_{0, 0, 0};
 };
 
-/// Limits of the force of an arm on a hand. There is no "off": a limit can be raised, but only
-/// within a range that still protects a person.
+/// Limits of the force of an arm on a hand. Only the power limit can be switched off. The others
+/// can be raised, but only within a range that still protects a person.
 struct GateLimits {
   /// Shortest soft start, s [chosen: below 50 ms a hand feels no ramp but a knock: a stretch reflex
   /// responds after 30 to 50 ms M].
   static constexpr double kSoftStartMin = 0.05;
   /// Fastest rise, N/s [chosen: 100 N in a tick of 1 ms, more than any arm here can exert].
   static constexpr double kRiseMax = 1e5;
-  /// Shortest time to the whole force, s, an alternative bound for a force so large that only a
-  /// test bench uses it [chosen: a tick of the fastest loop here, 20 kHz].
+  /// Shortest time to the whole force, s. `rise_max` may be at most `kRiseMax` or `force_max /
+  /// kRiseTimeMin`, whichever is larger [chosen: a tick of the fastest loop here, 20 kHz].
   static constexpr double kRiseTimeMin = 5e-5;
   /// Longest gap between ticks that is not a fault, ns [chosen: twice the longest watchdog of a
   /// board, 0.5 s of the mbed one (woody_report.h)].
@@ -60,8 +60,9 @@ struct GateLimits {
 
   double force_max = 0;  ///< Largest force, N. Must be finite and > 0.
   double speed_max = 0;  ///< Tip speed above which the force is switched off until a restart, m/s.
-  /// Fastest change of the force vector, N/s. A decrease of its magnitude is never slowed, and an
-  /// old force that would push the hand on is removed at once (limit_rise in gate/safety_gate.cpp).
+  /// Fastest change of the force vector, N/s. A decrease of its magnitude is never slowed. A
+  /// remainder of the old force that would give the hand more power than the requested force is
+  /// reduced at once (limit_rise in gate/safety_gate.cpp).
   double rise_max = 0;
   double soft_start = 0;  ///< Time over which the limit opens from 0 to `force_max`, s.
   /// Time over which the limit opens after a gap, when the hand may already be in contact, s. A
@@ -69,13 +70,15 @@ struct GateLimits {
   double reopen = 0.04;
   /// Gap between ticks after which the limit opens again from 0, ns.
   std::int64_t stall_ns = 0;
-  /// Gap between ticks after which the arm's own watchdog has fired, ns; it is a fault.
+  /// Gap between ticks after which the arm's own watchdog has fired, ns. Such a gap is a fault.
+  /// SafetyGate lowers this limit to five times `stall_ns` if it is higher.
   std::int64_t watchdog_ns = 0;
   /// Mean power on the hand above which the force is reduced, W; the force is zero at `kPowerFade`
   /// times that. 0: not limited.
   double power_max = 0;
   double power_time = 2;  ///< Time constant of that mean, s.
-  /// Mean power at which the force is zero, as a multiple of `power_max` [chosen: soft, and near].
+  /// Mean power at which the force is zero, as a multiple of `power_max` [chosen: the force fades
+  /// smoothly, but the limit is exceeded only slightly].
   static constexpr double kPowerFade = 1.2;
 };
 
@@ -88,7 +91,8 @@ struct GateCounters {
   std::uint64_t damped = 0;         ///< Ticks damped by the passivity controller.
   std::uint64_t bounded = 0;        ///< Ticks limited by the energy bound.
   std::uint64_t power_limited = 0;  ///< Ticks reduced because the mean power was at its limit.
-  /// Ticks in which a program's part was reduced after an oscillation.
+  /// Ticks in which the program's part of the force (EnergyFlow::f_program_W) was reduced after an
+  /// oscillation.
   std::uint64_t calmed = 0;
   /// Number of growing oscillations of a program's force; not ticks.
   std::uint64_t oscillations = 0;
@@ -99,14 +103,14 @@ struct GateCounters {
 
 class ProgramWatch;
 
-/// Safety gate between every force law and the motors. Its stages: a program's part without growing
-/// oscillations -> finite -> speed limit -> time -> the arm's limit -> power limit -> soft start ->
-/// energy stage, if one is named -> rise limit.
+/// Safety gate between every force law and the motors. Its stages: reduction of a program's force
+/// that oscillates -> finite -> speed limit -> time -> the arm's limit -> power limit -> soft start
+/// -> energy stage, if one is named -> rise limit.
 ///
 /// The rise limit is last, so that it also covers the output of the energy stage. It is one-sided:
 /// a limit on the decrease as well would turn a passive wall into an active one (restitution up to
-/// 2.7) [PHYSICS 1.6]. No stage after the arm's limit makes a force larger than that limit, as far
-/// as the soft start has opened it.
+/// 2.7) [PHYSICS 1.6]. The soft start opens the arm's limit gradually. No later stage makes a force
+/// larger than the limit opened so far.
 ///
 /// The time of a tick must be finite and not negative, because all limits in time depend on it.
 ///
@@ -134,8 +138,8 @@ class THIMBLE_EXPORT SafetyGate {
   GatedForce pass(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT, double dt) noexcept;
 
   /// Does the same and applies the energy stage. `flow` is the energy flow since the previous call.
-  /// The stage may reduce the force or add damping to it. The result never exceeds the arm's limit,
-  /// as far as the soft start has opened it, nor the rise limit.
+  /// The stage may reduce the force or add damping to it. The result never exceeds the rise limit,
+  /// nor the part of the arm's limit that the soft start has opened.
   GatedForce pass_guarded(const Eigen::Vector3d& f_T_W, const Eigen::Vector3d& v_WT, double dt,
                           const EnergyFlow& flow) noexcept;
 

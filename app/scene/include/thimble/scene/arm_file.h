@@ -43,7 +43,8 @@ struct DeclaredLimits {
   double continuous_force = 0;
 };
 
-/// Energy stage of the gate, from an arm file. Empty values are derived from the arm.
+/// Energy stage of the gate, from an arm file. The members have the meanings of those in
+/// driver::EnergyGuardSettings. Empty values are derived from the arm.
 struct EnergyChoice {
   driver::EnergyStage stage = driver::EnergyStage::kNone;  ///< Energy stage.
   std::optional<double> mass{};                            ///< Mass, kg.
@@ -69,7 +70,8 @@ struct ArmFile {
   /// Line number of each key of the section `gate`.
   std::map<std::string, int, std::less<>> gate_lines;
   EnergyChoice energy;  ///< Energy stage of the safety gate.
-  /// Longest time a force is held while no encoder counts, s; if empty, the driver's default.
+  /// Longest time a force is held while the encoder counts do not change, s; if empty, the driver's
+  /// default.
   std::optional<double> hold_unchanged{};
   driver::HeatSettings heat{};  ///< Thermal limits of the motors, if known.
   DeclaredLimits declared;      ///< Limits declared by the manufacturer.

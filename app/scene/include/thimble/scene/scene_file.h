@@ -62,7 +62,7 @@ struct SceneObject {
   /// Effects on the object, in the order of execution.
   std::vector<render::EffectPlan> effects;
   SceneBody body;  ///< Material.
-  /// Coupling stiffness of the surface, if the object moves.
+  /// Bounds of the surface response, used if the object moves.
   render::BodyCoupling coupling;
 };
 
@@ -80,7 +80,8 @@ struct SceneArm {
   /// Name, unique in the scene ("left"); empty if there is only one arm.
   std::string name;
   std::filesystem::path arm_file;  ///< Path of the file from which `arm` was read.
-  /// Arm file that the scene itself names; used for the simulation only.
+  /// Arm file that the scene itself names. For a real arm only its stricter limits count, and
+  /// only if it is not one of the arm files that come with Thimble (see `apply_arm_policy`).
   std::filesystem::path own_arm_file;
   ArmPlace place;                  ///< Place in the scene.
   ArmFile arm;                     ///< Contents of the arm file, moved to `place`.

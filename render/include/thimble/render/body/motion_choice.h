@@ -12,7 +12,7 @@ namespace thimble::render {
 
 /// Kind of motion of a whole object.
 enum class MotionKind : std::uint8_t {
-  kTranslate,  ///< Three degrees of freedom: all base points follow one point mass [BP 4.3].
+  kTranslate,  ///< Three degrees of freedom: all points follow one point mass [BP 4.3].
   kRigid,      ///< Six degrees of freedom, with the inertia of the homogeneous solid mesh.
 };
 
@@ -39,7 +39,7 @@ struct THIMBLE_EXPORT MotionChoice {
   double damping = 0;                        ///< Damping of translation, N s/m, >= 0.
   /// Damping of rotation, N m s, >= 0; kRigid only.
   double angular_damping = 0;
-  /// Scale of time, > 0; see RigidBodySettings.
+  /// Ratio of the object's time to real time, > 0; a smaller ratio makes the object feel heavier.
   double time_scale = 1;
   std::optional<Floor> floor{};  ///< Floor, if there is one.
   /// Largest displacement of the centre, m, >= 0.

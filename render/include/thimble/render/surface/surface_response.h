@@ -104,11 +104,11 @@ concept FootStage = ClosestPointStage<Stage>;
 /// Position at which textures are evaluated: the closest point, as long as it moves no faster than
 /// the tip's path allows.
 ///
-/// Where cells of a surface meet deep inside, the closest point jumps, and the texture height would
-/// jump with it. This position follows it by at most `kPathRatio` times the path of tip and
-/// surface, as the felt depth does (track/path_bounded.h). While it lags behind it does not depend
-/// on the tip's position, so its slope is 0 and there is no lateral force. All functions are
-/// Real-time: safe.
+/// Deep inside an object, the closest point can jump from one part of the surface to another, and
+/// the texture height would jump with it. This position follows it by at most `kPathRatio` times
+/// the path of tip and surface, as the felt depth does (track/path_bounded.h). While it lags behind
+/// it does not depend on the tip's position, so its slope is 0 and there is no lateral force. All
+/// functions are Real-time: safe.
 class ClosestPointFollower {
  public:
   /// Largest ratio of the path of the position to that of the tip, as ProxyFilter::kPathRatio.
