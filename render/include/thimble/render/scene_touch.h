@@ -15,9 +15,9 @@ namespace thimble::render {
 
 class ContactWorld;
 
-/// Force law of a scene. Solids share one proxy, so the tip feels their union. The forces of fields,
-/// and of objects that cannot share it, are added. The contact information is that of the object in
-/// which the tip is deepest.
+/// Force law of a scene. Solids share one proxy, so the tip feels their union. The forces of
+/// fields, and of objects that cannot share it, are added. The contact information is that of the
+/// object in which the tip is deepest.
 class THIMBLE_EXPORT SceneTouch {
  public:
   /// Constructs the law from the objects in the scene's order. TouchInfo::object is the index of an
