@@ -46,7 +46,7 @@ TriangleMesh turned(TriangleMesh mesh) {
   return mesh;
 }
 
-/// A post that stands in a base, as in post_one_mesh.yaml: the base's top at z = 0.
+/// A post that is in a base, as in post_one_mesh.yaml: the base's top at z = 0.
 const SolidBlock kBase{.centre = {0, 0, -0.01}, .half = {0.03, 0.03, 0.01}};
 const SolidBlock kPost{.centre = {0, 0, 0.005}, .half = {0.005, 0.03, 0.01}};
 

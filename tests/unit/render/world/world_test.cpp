@@ -205,7 +205,7 @@ TEST(World, AClosedLoopThroughASeamDoesNoWork) {
   EXPECT_LT(std::abs(work.sum), 1e-6 * work.in);
 }
 
-TEST(World, TheForceChangesByAtMostFiveTimesTheStiffestSpringPerPath) {
+TEST(World, ForceChangesByAtMostFiveKTimesThePath) {
   Random random(200);
   const int scenes = support::long_form() ? 2000 : 100;
   double most = 0;
