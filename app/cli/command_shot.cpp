@@ -79,7 +79,8 @@ std::string output_error(const ShotOptions& options) {
   if (!options.out.empty() && !is_png(options.out)) {
     return "--out: expected a file name that ends in .png, found " + options.out + ".";
   }
-  if (!options.animate.empty() && !is_png(options.animate) && !view::is_film(options.animate)) {
+  if (!options.animate.empty() && !is_png(options.animate) &&
+      !view::is_animation(options.animate)) {
     return "--animate: expected a file name that ends in .mp4, .gif or .png, found " +
            options.animate + ".";
   }
@@ -95,7 +96,7 @@ std::string output_error(const ShotOptions& options) {
 /// Writes the pictures in the format given by the file's ending, and prints what was written.
 int write_animation(const std::vector<view::Picture>& pictures, const ShotOptions& options) {
   const double frame_time = 1 / options.pace;
-  const bool film = view::is_film(options.animate);
+  const bool film = view::is_animation(options.animate);
   const auto written = film ? view::write_film(pictures, frame_time, options.animate)
                             : view::write_animated_png(pictures, frame_time, options.animate);
   if (!written) return report_error(written.error(), kExitTrouble);
@@ -137,7 +138,7 @@ int take_shot(const ShotOptions& options) {
   for (const std::string& wrong : {output_error(options), time_error(options)}) {
     if (!wrong.empty()) return report_error({wrong}, kExitBadInput);
   }
-  if (view::is_film(options.animate)) {
+  if (view::is_animation(options.animate)) {
     if (const auto found = view::find_ffmpeg(); !found) {
       return report_error(found.error(), kExitTrouble);
     }
@@ -147,7 +148,7 @@ int take_shot(const ShotOptions& options) {
   for (const auto& file : scene::scene_inputs(options.scene)) plan.read(file);
   plan.write("--out", options.out, output::kPng);
   plan.write("--animate", options.animate,
-             view::is_film(options.animate) ? output::kAnimation : output::kPng);
+             view::is_animation(options.animate) ? output::kAnimation : output::kPng);
   if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   choice.paint.shading =
       options.shading == "gouraud" ? view::Shading::kGouraud : view::Shading::kPhong;

@@ -94,14 +94,14 @@ int play_steps(long steps, const std::vector<std::string>& spaces) {
     if (pull) bad += arms.front().pull() ? 0 : 1;
     ask.data(kTicks * static_cast<std::uint64_t>(i + 1));
     const double wanted = 1e-3 * static_cast<double>(ask.data() - 1);
-    const auto all_told = [&] {
+    const auto all_reported = [&] {
       bool complete = done == ask.data() && time >= wanted - 1e-6;
       for (const Arm& arm : arms)
         complete = complete && arm.time_pose == time && arm.time_wrench == time;
       return complete;
     };
     auto again = Clock::now();
-    while (!all_told()) {
+    while (!all_reported()) {
       if (Clock::now() > late) return 5;
       if (Clock::now() >= again) {  // a repeated request has no effect
         step->write(&ask);

@@ -143,7 +143,7 @@ driver::Error missing() {
 
 }  // namespace
 
-bool is_film(const std::filesystem::path& file) {
+bool is_animation(const std::filesystem::path& file) {
   const std::string ending = ending_of(file);
   return ending == ".mp4" || ending == ".gif";
 }

@@ -9,7 +9,7 @@
 namespace thimble::view {
 
 /// Returns whether the file name is that of a film written by ffmpeg: .mp4 or .gif.
-bool is_film(const std::filesystem::path& file);
+bool is_animation(const std::filesystem::path& file);
 
 /// Returns whether the file name is that of a GIF. Players show a picture of a GIF for 0.1 s if it
 /// asks for less than 0.02 s.
@@ -24,7 +24,7 @@ driver::Result<void> find_ffmpeg();
 /// ones.
 ///
 /// Fails without ffmpeg, or with the message of ffmpeg.
-/// Precondition: there is a picture and is_film(file). Real-time: never from the servo thread.
+/// Precondition: there is a picture and is_animation(file). Real-time: never from the servo thread.
 driver::Result<void> write_film(const std::vector<Picture>& pictures, double frame_time,
                                 const std::filesystem::path& file);
 

@@ -18,9 +18,9 @@ inline void OffsetTriangle::unpack_here(const PackedTriangle& r) noexcept {
   source_ = r.source();
   // Corner 0 twice, and the two sides from it; differences may need 33 bits.
   const Sides x(r.x.data()), y(r.y.data()), z(r.z.data());
-  const double area_x = x_times_y(y.both, z.both);
-  const double area_y = x_times_y(z.both, x.both);
-  const double area_z = x_times_y(x.both, y.both);
+  const double area_x = cross_xy(y.both, z.both);
+  const double area_y = cross_xy(z.both, x.both);
+  const double area_z = cross_xy(x.both, y.both);
   const double per_size = 1 / std::sqrt(area_x * area_x + area_y * area_y + area_z * area_z);
   const double face_x = area_x * per_size, face_y = area_y * per_size, face_z = area_z * per_size;
   // The duals are side_2 x face / size and face x side_1 / size.

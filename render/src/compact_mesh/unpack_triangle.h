@@ -29,7 +29,7 @@ inline __m128d swapped(__m128d v) noexcept {
 }
 
 // u_1 v_2 - u_2 v_1 of two pairs.
-inline double x_times_y(__m128d u, __m128d v) noexcept {
+inline double cross_xy(__m128d u, __m128d v) noexcept {
   const __m128d products = _mm_mul_pd(u, swapped(v));
   return _mm_cvtsd_f64(_mm_sub_sd(products, _mm_unpackhi_pd(products, products)));
 }

@@ -55,9 +55,9 @@ inline std::string ball(const std::string& arm, const std::string& gate) {
 }
 
 /// A separate home folder for each test, with simulated USB arms.
-class RealArmTermsTest : public ::testing::Test {
+class ArmPolicyTest : public ::testing::Test {
  protected:
-  RealArmTermsTest() {
+  ArmPolicyTest() {
     fs::remove_all(home_);
     fs::create_directories(home_);
     setenv("XDG_CONFIG_HOME", (home_ / "config").c_str(), 1);

@@ -24,7 +24,7 @@ using driver::ArmKind;
 using driver::EnergyStage;
 using driver::FoundArm;
 
-TEST_F(RealArmTermsTest, ArmFileFollowsFromKindOrBoardModel) {
+TEST_F(ArmPolicyTest, ArmFileFollowsFromKindOrBoardModel) {
   EXPECT_EQ(file_for(plug(ArmKind::kWoody, "W1")), "woodenhaptics");
   EXPECT_EQ(file_for(plug(ArmKind::kFalcon, "F1")), "falcon");
   EXPECT_EQ(file_for(plug(ArmKind::kHfabLine, "L1"), 1), "polhem");
@@ -34,14 +34,14 @@ TEST_F(RealArmTermsTest, ArmFileFollowsFromKindOrBoardModel) {
   EXPECT_TRUE(holds(nine, "reports model 9") && holds(nine, "--device L1 --arm")) << nine;
 }
 
-TEST_F(RealArmTermsTest, BoardWithoutModelIsRefusedWithAdvice) {
+TEST_F(ArmPolicyTest, BoardWithoutModelIsRefusedWithAdvice) {
   const std::string said = file_for(plug(ArmKind::kPolhem, "P1"));
   EXPECT_TRUE(holds(said, "thimble calibrate --device P1 --arm NAME")) << said;
   EXPECT_TRUE(holds(said, "polhem")) << said;
   EXPECT_FALSE(holds(said, "falcon")) << said;
 }
 
-TEST_F(RealArmTermsTest, UnknownBoardIsNotAskedForItsModel) {
+TEST_F(ArmPolicyTest, UnknownBoardIsNotAskedForItsModel) {
   for (const char* product : {"Haply inverse3", "USB Serial", "Teensyduino RawHID", ""}) {
     FoundArm arm = plug(ArmKind::kHfabLine, "T1", 0x0279, product);
     arm.node = home_ / "port";
@@ -53,7 +53,7 @@ TEST_F(RealArmTermsTest, UnknownBoardIsNotAskedForItsModel) {
   }
 }
 
-TEST_F(RealArmTermsTest, NamedFileOverridesTheCalibration) {
+TEST_F(ArmPolicyTest, NamedFileOverridesTheCalibration) {
   const FoundArm arm = plug(ArmKind::kHfabLine, "P1");
   ASSERT_TRUE(scene::save_calibration("P1", {.arm_file = "polhem"}));
   const auto kept = scene::find_real_arm_file(arm);
@@ -79,7 +79,7 @@ TEST_F(RealArmTermsTest, NamedFileOverridesTheCalibration) {
   EXPECT_TRUE(holds(file_for(arm), "No installed arm file is called gone"));
 }
 
-TEST_F(RealArmTermsTest, FileForAnotherWireIsRefused) {
+TEST_F(ArmPolicyTest, FileForAnotherWireIsRefused) {
   const auto found =
       scene::find_real_arm_file(plug(ArmKind::kWoody, "W1"), {.arm_file = kArms / "falcon.yaml"});
   ASSERT_FALSE(found);
@@ -87,7 +87,7 @@ TEST_F(RealArmTermsTest, FileForAnotherWireIsRefused) {
       << found.error().message;
 }
 
-TEST_F(RealArmTermsTest, ForeignFileOnlyTightensLimits) {
+TEST_F(ArmPolicyTest, ForeignFileOnlyTightensLimits) {
   struct Case {
     const char *key, *was, *tighter, *weaker;
     double (*value)(const scene::ArmFile&);
@@ -147,7 +147,7 @@ TEST_F(RealArmTermsTest, ForeignFileOnlyTightensLimits) {
   }
 }
 
-TEST_F(RealArmTermsTest, ForeignFileCannotChangeTheArm) {
+TEST_F(ArmPolicyTest, ForeignFileCannotChangeTheArm) {
   const FoundArm arm = plug(ArmKind::kWoody, "W1");
   struct Case {
     const char *was, *by, *section;
@@ -176,7 +176,7 @@ TEST_F(RealArmTermsTest, ForeignFileCannotChangeTheArm) {
   }
 }
 
-TEST_F(RealArmTermsTest, CustomArmIsInstalledOnce) {
+TEST_F(ArmPolicyTest, CustomArmIsInstalledOnce) {
   const FoundArm arm = plug(ArmKind::kPolhem, "P1");
   const fs::path file = copy_of("polhem", "name: polhem", "name: my_arm");
   const auto before = scene::find_real_arm_file(arm, {.arm_file = file});
@@ -193,7 +193,7 @@ TEST_F(RealArmTermsTest, CustomArmIsInstalledOnce) {
   EXPECT_EQ(scene::find_arm_file("mine")->string(), mine.string()) << "the arm is found by name";
 }
 
-TEST_F(RealArmTermsTest, UserFileReplacesTheShippedOne) {
+TEST_F(ArmPolicyTest, UserFileReplacesTheShippedOne) {
   const FoundArm arm = plug(ArmKind::kWoody, "W1");
   write(scene::own_arm_folder() / "woodenhaptics.yaml",
         with(text_of(kArms / "woodenhaptics.yaml"), "force_max: 5 ", "force_max: 2 "));
@@ -207,7 +207,7 @@ TEST_F(RealArmTermsTest, UserFileReplacesTheShippedOne) {
 }
 
 // A scene with one ball, its arm and its gate.
-TEST_F(RealArmTermsTest, ShippedScenesKeepTheArmAndItsLimits) {
+TEST_F(ArmPolicyTest, ShippedScenesKeepTheArmAndItsLimits) {
   const auto terms = scene::find_arm_policy(
       plug(ArmKind::kPolhem, "P1"),
       {.arm_file = kArms / "polhem.yaml", .firmware = {}, .unchecked = true});
@@ -233,7 +233,7 @@ TEST_F(RealArmTermsTest, ShippedScenesKeepTheArmAndItsLimits) {
   EXPECT_GE(scenes, 8);
 }
 
-TEST_F(RealArmTermsTest, SceneCannotRemoveTheEnergyStage) {
+TEST_F(ArmPolicyTest, SceneCannotRemoveTheEnergyStage) {
   const fs::path file = home_ / "scene" / "ball.yaml";
   const auto terms = scene::find_arm_policy(plug(ArmKind::kWoody, "W1"),
                                             {.arm_file = {}, .firmware = {}, .unchecked = true});
@@ -265,7 +265,7 @@ TEST_F(RealArmTermsTest, SceneCannotRemoveTheEnergyStage) {
   EXPECT_EQ(simulated->energy, EnergyStage::kBounding);
 }
 
-TEST_F(RealArmTermsTest, SceneArmFileOnlyTightensLimits) {
+TEST_F(ArmPolicyTest, SceneArmFileOnlyTightensLimits) {
   const fs::path folder = home_ / "scene", file = folder / "ball.yaml";
   std::string own = text_of(kArms / "vintage_phantom.yaml");
   own = with(own, "  force: 5 ", "  force: 100 ");
@@ -300,7 +300,7 @@ TEST_F(RealArmTermsTest, SceneArmFileOnlyTightensLimits) {
   EXPECT_FALSE(scene::apply_arm_policy(*scene, file, *terms));
 }
 
-TEST_F(RealArmTermsTest, RealArmRunNeedsTerms) {
+TEST_F(ArmPolicyTest, RealArmRunNeedsAPolicy) {
   const fs::path file = home_ / "scene" / "ball.yaml";
   write(file, ball((kArms / "vintage_phantom.yaml").string(), ""));
   session::SessionOptions options;
@@ -310,7 +310,7 @@ TEST_F(RealArmTermsTest, RealArmRunNeedsTerms) {
   EXPECT_TRUE(holds(session.error().message, "terms")) << session.error().message;
 }
 
-TEST_F(RealArmTermsTest, KnownLineBoardIsAskedForItsModel) {
+TEST_F(ArmPolicyTest, KnownLineBoardIsAskedForItsModel) {
   const support::LineBoard board(2);
   if (board.node().empty()) GTEST_SKIP() << "this machine has no pseudo-terminals";
   FoundArm arm = plug(ArmKind::kHfabLine, "V1", 0x0279, "Haptikfabriken vintage");
@@ -323,7 +323,7 @@ TEST_F(RealArmTermsTest, KnownLineBoardIsAskedForItsModel) {
   EXPECT_GT(board.messages(), 0);
 }
 
-TEST_F(RealArmTermsTest, SessionGateFollowsTheTerms) {
+TEST_F(ArmPolicyTest, SessionGateFollowsThePolicy) {
   const support::LineBoard board(2);
   if (board.node().empty()) GTEST_SKIP() << "this machine has no pseudo-terminals";
   FoundArm arm = plug(ArmKind::kHfabLine, "V1", 0x0279, "Haptikfabriken vintage");

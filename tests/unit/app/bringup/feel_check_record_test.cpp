@@ -19,7 +19,7 @@ namespace {
 using driver::ArmKind;
 using driver::FoundArm;
 
-TEST_F(RealArmTermsTest, UncheckedArmStaysBelowHalfANewton) {
+TEST_F(ArmPolicyTest, UncheckedArmStaysBelowHalfANewton) {
   const FoundArm arm = plug(ArmKind::kWoody, "W1");
   const fs::path file = home_ / "scene" / "ball.yaml";
   write(file, ball((kArms / "vintage_phantom.yaml").string(), ""));
@@ -56,7 +56,7 @@ TEST_F(RealArmTermsTest, UncheckedArmStaysBelowHalfANewton) {
 }
 
 /// Checks whether a passed feel check is still valid after a change.
-class FeelCheckRecordTest : public RealArmTermsTest {
+class FeelCheckRecordTest : public ArmPolicyTest {
  protected:
   FeelCheckRecordTest() {
     write(scene::own_arm_folder() / "woodenhaptics.yaml", text_of(kArms / "woodenhaptics.yaml"));

@@ -23,7 +23,7 @@ using support::HaplyGreeting;
 using support::MockHaplyService;
 
 /// A computer that runs Haply's service.
-class LinkedArmTest : public RealArmTermsTest {
+class LinkedArmTest : public ArmPolicyTest {
  protected:
   ~LinkedArmTest() override { unsetenv("THIMBLE_HAPLY_PORT"); }
 

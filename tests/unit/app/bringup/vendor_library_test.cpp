@@ -29,7 +29,7 @@ const bool kNamed = [] {
 }();
 
 /// Arms on USB whose vendors' libraries are installed.
-class VendorLibraryTest : public RealArmTermsTest {
+class VendorLibraryTest : public ArmPolicyTest {
  protected:
   VendorLibraryTest()
       : usb_(std::string("vendor_") +

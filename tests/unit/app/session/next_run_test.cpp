@@ -23,7 +23,7 @@ namespace thimble::session {
 namespace {
 
 const std::filesystem::path kSource(THIMBLE_SOURCE_DIR);
-const std::atomic<bool> kGoesOn{false};
+const std::atomic<bool> kNeverStop{false};
 
 /// Run of a copy of the rubber ball's scene file, with viewers in this process.
 class NextRunTest : public ::testing::Test {
