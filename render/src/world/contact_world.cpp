@@ -28,6 +28,10 @@ constexpr int kAgreeMax = 6;
 // Longest way out of a notch between faces, in lifts: 2 degrees. [chosen]
 constexpr double kNotchMax = 64;
 
+// Way of the tip after which a refused tracker is asked again, as a share of the depth: where faces
+// meet, trackers hop within about the depth. [chosen]
+constexpr double kAskAgain = 0.125;
+
 // Number of solids in the neighbourhood up to which a larger one is worthwhile. [chosen]
 constexpr std::size_t kFew = 12;
 
@@ -175,9 +179,13 @@ void ContactWorld::move(const Vector3d& p_WT) noexcept {
     }
     push_ = push_out(planes(room), p_WT, 0, lift_ / 4);
     if (active_count_ > 1 && !agrees(p_WT, push_) && ++agreed < kAgreeMax) continue;
-    const PushOut lifted =
-        active_count_ > 0 ? push_out(planes(room), p_WT, lift_, lift_ / 4) : PushOut{};
-    if (advance(p_WT + lifted.d)) {
+    Vector3d goal = p_WT + push_.d;
+    if (active_count_ == 1) {
+      goal += lift_ * active_[0].plane.n;
+    } else if (active_count_ > 1) {
+      goal = p_WT + push_out(planes(room), p_WT, lift_, lift_ / 4).d;
+    }
+    if (advance(goal)) {
       agreed = 0;
       continue;
     }
@@ -228,7 +236,9 @@ void ContactWorld::begin(std::int32_t i, std::int32_t triangle, const Vector3d& 
   }
   push_.lambda[slot] = 0;
   Active& active = active_[slot];
-  active = {.solid = i, .fresh = true};
+  active = {};
+  active.solid = i;
+  active.fresh = true;
   active.found = solid(i).begin(triangle, p_W);
   active.plane = {.n = active.found.n_W, .offset = active.found.n_W.dot(p_W)};
   ++counters_.begun;
@@ -282,8 +292,10 @@ bool ContactWorld::follow_active(const Vector3d& p_WT) noexcept {
 const ContactState& ContactWorld::follow_one(Active& active) noexcept {
   WorldSolid& one = solid(active.solid);
   if (active.closely) {
-    if (!active.tried) {
+    const double moved = (active.at_W - active.refused_at_W).norm();
+    if (!active.tried && moved > kAskAgain * active.found.depth) {
       active.tried = true;
+      active.refused_at_W = active.at_W;
       const ContactState& found = one.follow(active.at_W);
       if (found.touching && !hidden(active, found)) {
         active.closely = false;
@@ -297,6 +309,7 @@ const ContactState& ContactWorld::follow_one(Active& active) noexcept {
   if (changed && found.touching && !one.follows_closely() && hidden(active, found)) {
     ++counters_.hidden;
     active.closely = active.tried = true;
+    active.refused_at_W = active.at_W;
     return one.follow_closely(active.found, active.at_W);
   }
   return found;
@@ -415,7 +428,7 @@ driver::ForceCommand ContactWorld::feel_one(const driver::DeviceState& state) no
       felt.p_WP = state.p_WT + felt.depth * felt.n_W;
     }
   }
-  leave_others(std::span(&active.solid, 1));
+  if (felt_count_ != 1 || felt_[0] != active.solid) leave_others(std::span(&active.solid, 1));
   driver::ForceCommand command = one.feel(state, felt);
   command.touch.object = members_[static_cast<std::size_t>(active.solid)].object;
   if (!command.touch.in_contact) command.touch.object = -1;

@@ -70,12 +70,13 @@ class THIMBLE_EXPORT ContactWorld {
   struct Active {
     std::int32_t solid = -1;
     ActivePlane plane;
-    ContactState found;             // contact at `at_W`, or at the begin
-    Eigen::Vector3d at_W{0, 0, 0};  // tip as pushed out by the others
-    bool fresh = false;             // begun, and not followed since
-    bool ended = false;             // has let go
-    bool closely = false;           // the tracker's proxy was refused
-    bool tried = false;             // whether the tracker was asked again in this tick
+    ContactState found;                     // contact at `at_W`, or at the begin
+    Eigen::Vector3d at_W{0, 0, 0};          // tip as pushed out by the others
+    bool fresh = false;                     // begun, and not followed since
+    bool ended = false;                     // has let go
+    bool closely = false;                   // the tracker's proxy was refused
+    Eigen::Vector3d refused_at_W{0, 0, 0};  // tip when the tracker was asked last
+    bool tried = false;                     // whether the tracker was asked again in this tick
   };
   using Planes = std::array<ActivePlane, kActiveMax>;
 

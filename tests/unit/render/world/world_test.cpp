@@ -205,6 +205,27 @@ TEST(World, AClosedLoopThroughASeamDoesNoWork) {
   EXPECT_LT(std::abs(work.sum), 1e-6 * work.in);
 }
 
+TEST(World, ASeamBetweenSoftAndStiffGivesTheHandNoEnergy) {
+  for (const TrackerChoice tracker : support::kTrackers) {
+    for (const double direction : {1.0, -1.0}) {
+      std::vector<SolidBlock> blocks = seam();
+      blocks[1].stiffness = 2 * kStiffness;
+      SceneTouch scene = scene_of(blocks, {.tracker = tracker});
+      scene(at({-0.004, 0, 0.01}));
+      // Down on one side, along, and up on the other.
+      const auto path = [=](double t) {
+        const double angle = direction * 2 * std::numbers::pi * t + 2.4;
+        return Vector3d(0.002 * std::cos(angle), 0.001 * std::sin(angle),
+                        0.0004 + 0.002 * std::sin(angle));
+      };
+      const Work work = work_around(scene, path, 4000);
+      EXPECT_GT(work.in, 1e-4);
+      // The share that a lagging spring is given (ProxyFilter::kGift), of this path.
+      EXPECT_LT(work.sum, 0.05 * work.in) << support::scene_name(tracker) << ' ' << direction;
+    }
+  }
+}
+
 TEST(World, ForceChangesByAtMostFiveKTimesThePath) {
   Random random(200);
   const int scenes = support::long_form() ? 2000 : 100;
