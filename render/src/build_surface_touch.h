@@ -9,6 +9,7 @@
 #include "thimble/render/object_touch.h"
 #include "track/path_bounded.h"
 #include "world/law_solid.h"
+#include "world/shape_solid.h"
 
 namespace thimble::render {
 
@@ -34,6 +35,8 @@ std::unique_ptr<ObjectTouch> adapt_law(Law law) {
   auto adapter = std::make_unique<ObjectTouchAdapter<Law>>(std::move(law));
   if constexpr (SolidLaw<Law>) {
     adapter->set_solid(std::make_shared<LawSolid<Law>>(adapter->law()));
+  } else if constexpr (ShapeLaw<Law>) {
+    adapter->set_solid(std::make_shared<ShapeSolid<Law>>(adapter->law()));
   }
   return adapter;
 }

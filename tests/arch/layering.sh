@@ -55,7 +55,7 @@ layers='
   body: state settings touch mesh
   disk_paging: state mesh compact_mesh search track
   multirate: touch
-  world: state settings touch mesh compact_mesh search track
+  world: state settings touch mesh compact_mesh search track field
 '
 upward=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' render | awk -v layers="$layers" '
   function layer(path) {

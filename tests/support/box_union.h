@@ -104,17 +104,18 @@ class BoxUnionProxy {
   BoxUnionProxy(std::vector<SolidBlock> blocks, const Eigen::Vector3d& start)
       : blocks_(std::move(blocks)), q_(start) {}
 
-  /// Moves to the place for a tip at `p`. Returns the proxy.
-  const Eigen::Vector3d& follow(const Eigen::Vector3d& p) {
+  /// Moves to the place for a tip at `p`. Returns the proxy, on the faces that hold it.
+  Eigen::Vector3d follow(const Eigen::Vector3d& p) {
     for (int event = 0; event < 1000; ++event) {
-      const Eigen::Vector3d goal = nearest(p);
+      const Eigen::Vector3d goal = nearest(p, kLift);
       Event next;
       for (const Face& face : faces_) leave(face, goal, next);
       for (std::size_t b = 0; b < blocks_.size(); ++b) enter(b, goal, next);
       if (next.at > 1) {
         q_ = goal;
+        const Eigen::Vector3d on_faces = nearest(p, 0);
         std::erase_if(faces_, [&](const Face& face) { return !face.presses; });
-        return q_;
+        return on_faces;
       }
       q_ += next.at * (goal - q_);
       if (next.enters) {
@@ -148,7 +149,7 @@ class BoxUnionProxy {
   };
 
   // The point nearest to `p` in all half-spaces of the present faces, by trying all combinations.
-  Eigen::Vector3d nearest(const Eigen::Vector3d& p) {
+  Eigen::Vector3d nearest(const Eigen::Vector3d& p, double lift) {
     const std::size_t count = faces_.size();
     Eigen::Vector3d best = q_;
     std::size_t best_set = 0;
@@ -165,7 +166,7 @@ class BoxUnionProxy {
       for (Eigen::Index i = 0; i < m; ++i) {
         const Face& face = faces_[chosen[static_cast<std::size_t>(i)]];
         N.col(i) = blocks_[face.block].normal(face.face);
-        depth[i] = blocks_[face.block].offset(face.face) + kLift - N.col(i).dot(p);
+        depth[i] = blocks_[face.block].offset(face.face) + lift - N.col(i).dot(p);
       }
       Eigen::Vector3d x = p;
       if (m > 0) {
@@ -180,7 +181,7 @@ class BoxUnionProxy {
       for (const Face& face : faces_) {
         const SolidBlock& block = blocks_[face.block];
         outside =
-            outside && block.normal(face.face).dot(x) >= block.offset(face.face) + kLift - 1e-15;
+            outside && block.normal(face.face).dot(x) >= block.offset(face.face) + lift - 1e-15;
       }
       if (!outside || !((x - p).squaredNorm() < least)) continue;
       least = (x - p).squaredNorm();

@@ -59,7 +59,7 @@ ContactWorld::ContactWorld(std::vector<Member> members)
     members_[i].solid->prepare_fallback();
     lift_ = std::max(lift_, kLift * members_[i].solid->rounding());
     const SolidBox& box = tree_.box(static_cast<std::int32_t>(i));
-    sides += (box.max - box.min).maxCoeff();
+    if (!members_[i].solid->moves()) sides += (box.max - box.min).maxCoeff();
     if (members_[i].solid->changes()) changing_.push_back(static_cast<std::int32_t>(i));
     if (members_[i].solid->moves()) moving_.push_back(static_cast<std::int32_t>(i));
   }

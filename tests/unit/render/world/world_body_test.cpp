@@ -184,7 +184,9 @@ TEST(WorldBody, ABodyThatSweepsOverTheTipCarriesItToAWall) {
     least = std::min(least, command.f_T_W.x());
     ASSERT_TRUE(command.f_T_W.allFinite());
     const double face = 0.02 + scene.object(0).pose().p_WB[0];
-    if (face < 0.0005 && face > -0.005) EXPECT_LT(command.f_T_W.x(), 0) << i;
+    if (face < 0.0005 && face > -0.005) {
+      EXPECT_LT(command.f_T_W.x(), 0) << i;
+    }
     EXPECT_GT(scene.world()->proxy().x(), -0.01);
   }
   EXPECT_LT(least, -1);

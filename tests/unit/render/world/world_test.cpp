@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "support/box_union.h"
@@ -17,6 +19,7 @@
 #include "support/random.h"
 #include "support/tracker_names.h"
 #include "thimble/driver/device_state.h"
+#include "thimble/render/build_primitive_touch.h"
 #include "thimble/render/scene_touch.h"
 #include "world/contact_world.h"
 
@@ -96,6 +99,58 @@ INSTANTIATE_TEST_SUITE_P(Trackers, EachTracker, testing::ValuesIn(support::kTrac
                          [](const auto& each) {
                            return std::string(support::scene_name(each.param));
                          });
+
+/// The same solids as shapes without a mesh.
+SceneTouch shapes_of(const std::vector<SolidBlock>& blocks) {
+  std::vector<std::unique_ptr<ObjectTouch>> objects;
+  for (const SolidBlock& block : blocks) {
+    EntryFaceBox box;
+    box.R_WO = block.R;
+    box.p_WO = block.centre;
+    box.half_sides = block.half;
+    objects.push_back(build_primitive_touch(box, {.spring = {.stiffness = block.stiffness}}));
+  }
+  return SceneTouch(std::move(objects));
+}
+
+TEST(World, ShapesWithoutAMeshAreFeltAsMeshesAre) {
+  for (const std::vector<SolidBlock>& blocks : {seam(), under_block()}) {
+    SceneTouch shapes = shapes_of(blocks), meshes = scene_of(blocks, kGodObject);
+    ASSERT_NE(shapes.world(), nullptr);
+    Random random(300);
+    Vector3d p(-0.005, 0, 0.02), target = p;
+    double most = 0, largest = 0;
+    for (int i = 0; i < 20'000; ++i) {
+      if (random.uniform(0, 1) < 0.01) {
+        target = {random.uniform(-0.012, 0.012), random.uniform(-0.01, 0.01),
+                  random.uniform(-0.003, 0.02)};
+      }
+      p += random.uniform(0, 1e-4) * (target - p).normalized();
+      const driver::ForceCommand a = shapes(at(p)), b = meshes(at(p));
+      most = std::max(most, (a.f_T_W - b.f_T_W).norm());
+      largest = std::max(largest, b.f_T_W.norm());
+    }
+    EXPECT_LT(most, 1e-6);
+    EXPECT_GT(largest, 1);
+  }
+}
+
+TEST(World, ASphereOnAPlaneStopsATipThatPressesThePlane) {
+  std::vector<std::unique_ptr<ObjectTouch>> objects;
+  objects.push_back(build_primitive_touch(HalfSpace{}, {.spring = {.stiffness = kStiffness}}));
+  objects.push_back(build_primitive_touch(Sphere{.p_WO = {0.02, 0, 0.015}, .radius = 0.02},
+                                          {.spring = {.stiffness = kStiffness}}));
+  SceneTouch scene(std::move(objects));
+  driver::ForceCommand last;
+  for (int i = 0; i < 2500; ++i) {
+    last = scene(at({-0.01 + 1e-5 * std::max(0, i - 400), 0, std::max(-0.002, 0.002 - 1e-5 * i)}));
+  }
+  // The proxy rests where the sphere meets the plane.
+  const double edge = 0.02 - std::sqrt(0.02 * 0.02 - 0.015 * 0.015);
+  EXPECT_NEAR(scene.world()->proxy().x(), edge, 1e-8);
+  EXPECT_NEAR(scene.world()->proxy().z(), 0, 1e-8);
+  EXPECT_NEAR(last.f_T_W.x(), kStiffness * (edge - (-0.01 + 1e-5 * 2099)), 1e-4);
+}
 
 TEST(World, ATipThatStartsInsideFeelsTheSolidAfterLeaving) {
   SceneTouch scene = scene_of(under_block(), kGodObject);

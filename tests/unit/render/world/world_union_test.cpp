@@ -110,7 +110,8 @@ Comparison compare(const std::vector<SolidBlock>& blocks, Random& random, int ti
       continue;
     }
     const double off = (proxy - q).norm();
-    if (off > 1e-6) {
+    const bool alike = (exact.active() > 0) == (scene.world()->active_count() > 0);
+    if (off > 1e-6 || !alike) {
       parted = true;
       ++result.parted;
       continue;
@@ -149,7 +150,7 @@ TEST(WorldUnion, TheProxyIsThatOfTheUnionOfBoxes) {
   EXPECT_EQ(all.no_minimum, 0);
   EXPECT_LT(all.proxy_off, 1e-9 * kSize);
   EXPECT_LT(all.force_off, 1e-6);
-  EXPECT_LE(scenes_parted, scenes / 100);
+  EXPECT_LE(all.parted, scenes / 100 * ticks);
   EXPECT_LE(all.unsettled, scenes * ticks / 100'000);
 }
 
