@@ -7,8 +7,9 @@
 
 namespace thimble::render {
 
-SceneTouch::SceneTouch(std::vector<std::unique_ptr<ObjectTouch>> objects)
+SceneTouch::SceneTouch(std::vector<std::unique_ptr<ObjectTouch>> objects, SharedProxy shared)
     : objects_(std::move(objects)) {
+  if (shared == SharedProxy::kNo) return;
   std::vector<ContactWorld::Member> members;
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const auto solids = objects_[i]->solids();

@@ -87,7 +87,7 @@ TEST(IdentifyBacklash, FindsTheWidthAndTheCableBehindIt) {
     }
   }
   for (const Score* score : {&mass, &width, &resonance, &inertia, &gain}) {
-    score->tell();
+    score->print();
     EXPECT_LT(score->worst, score->max) << score->name;
     EXPECT_GE(score->held, 0.9 * score->all) << score->name;
   }

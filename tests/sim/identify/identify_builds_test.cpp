@@ -112,7 +112,7 @@ struct Scores {
   void expect_kept(int arms) const {
     int held = held_weights + held_viscous, all = 2 * arms;
     for (const Score* score : {&mass, &coulomb, &gain, &delay}) {
-      score->tell();
+      score->print();
       EXPECT_LT(score->worst, score->max) << score->name;
       held += score->held;
       all += score->all;

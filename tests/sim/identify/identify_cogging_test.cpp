@@ -115,8 +115,7 @@ TEST(IdentifyCogging, FindsCoggingAndRippleOfHiddenArms) {
     const Estimate& rubs = found->constants.viscous;
     const double truth = arm.file.simulated.plant.viscous;
     viscous.add(rubs, truth);
-    viscous_right +=
-        std::abs(rubs.value / truth - 1) < viscous.max_periods || rubs.holds(truth) ? 1 : 0;
+    viscous_right += std::abs(rubs.value / truth - 1) < viscous.max || rubs.holds(truth) ? 1 : 0;
     const MotorCogging& waves = found->waves;
     if (!waves.is_reported()) continue;
     ++reported;
@@ -134,9 +133,9 @@ TEST(IdentifyCogging, FindsCoggingAndRippleOfHiddenArms) {
               drawn, reported, right);
   for (const Found* one : {&cogging, &ripple}) one->tell();
   for (const Score* score : {&mass, &coulomb, &delay, &viscous}) {
-    score->tell();
+    score->print();
     if (score != &viscous) {
-      EXPECT_LT(score->worst, score->max_periods) << score->name;
+      EXPECT_LT(score->worst, score->max) << score->name;
     }
   }
   EXPECT_GE(viscous_right, 0.95 * arms);

@@ -89,7 +89,7 @@ TEST(IdentifyJointFriction, IsFoundForEachJointInAdditionToTheTip) {
   // minimum, which cannot be detected (one of 39 does).
   constexpr double kMissed = 0.02;
   for (const Score* score : {&mass, &tip, &dry, &viscous, &gain, &motor, &stiffness, &resonance}) {
-    score->tell();
+    score->print();
     EXPECT_LE(score->missed, kMissed * score->all) << score->name;
     EXPECT_GE(score->held, 0.9 * score->all - (long_form() ? 0 : 1)) << score->name;
   }

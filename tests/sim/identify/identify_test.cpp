@@ -105,7 +105,7 @@ TEST(Identify, FindsConstantsOrReportsTooMuchFriction) {
   int held = 0, all = 0;
   std::printf("%d of %d arms refused\n", refused, arms);
   for (const Score* score : {&mass, &coulomb, &gain, &delay, &viscous, &weight}) {
-    score->tell();
+    score->print();
     if (long_form()) {
       EXPECT_GE(score->held, 0.9 * score->all) << score->name;
     }

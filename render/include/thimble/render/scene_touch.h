@@ -15,14 +15,20 @@ namespace thimble::render {
 
 class ContactWorld;
 
-/// Force law of a scene. Solids share one proxy, so the tip feels their union. The forces of
-/// fields, and of objects that cannot share it, are added. The contact information is that of the
-/// object in which the tip is deepest.
+/// Whether the solids of a scene share one proxy.
+enum class SharedProxy {
+  kNo,   ///< Each object has its own, and the forces are added.
+  kYes,  ///< The tip feels the union of all solids (render/src/world). Not used by scene files yet.
+};
+
+/// Force law of a scene. The forces of its objects are added, unless its solids share one proxy.
+/// The contact information is that of the object in which the tip is deepest.
 class THIMBLE_EXPORT SceneTouch {
  public:
   /// Constructs the law from the objects in the scene's order. TouchInfo::object is the index of an
   /// object in this order, from 0.
-  explicit SceneTouch(std::vector<std::unique_ptr<ObjectTouch>> objects);
+  explicit SceneTouch(std::vector<std::unique_ptr<ObjectTouch>> objects,
+                      SharedProxy shared = SharedProxy::kNo);
   SceneTouch(SceneTouch&&) noexcept;             ///< Moves all objects.
   SceneTouch& operator=(SceneTouch&&) noexcept;  ///< Moves all objects.
   ~SceneTouch();
@@ -83,7 +89,8 @@ class THIMBLE_EXPORT SceneTouch {
   const ObjectTouch& object(std::size_t i) const noexcept { return *objects_[i]; }
   /// Overload for a scene that is not const.
   ObjectTouch& object(std::size_t i) noexcept { return *objects_[i]; }
-  /// Returns the world of the scene's solids; null if there are fewer than two. Real-time: safe.
+  /// Returns the world of the scene's solids; null if they share no proxy or are fewer than two.
+  /// Real-time: safe.
   const ContactWorld* world() const noexcept { return world_.get(); }
 
  private:

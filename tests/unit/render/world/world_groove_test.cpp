@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "support/box_union.h"
-#include "support/meshes/hollows.h"
+#include "support/meshes/concave_solids.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/scene_touch.h"
@@ -32,7 +32,7 @@ driver::DeviceState at(const Vector3d& p) {
 
 TEST(WorldGroove, AWallAcrossAGrooveMakesACornerOfThreePlanes) {
   constexpr double kLeft = 0.5, kRight = 0.7, kStiffness = 800;
-  const support::Hollow groove =
+  const support::ConcaveSolid groove =
       support::groove(kLeft, kRight, 0.03, 0.03, {-0.03, -0.01, 0.0005, 0.01, 0.03});
   for (const Vector3d& lean :
        {Vector3d(0, -1, 0), Vector3d(0.2, -1, 0.3), Vector3d(-0.3, -1, -0.2)}) {
@@ -47,7 +47,7 @@ TEST(WorldGroove, AWallAcrossAGrooveMakesACornerOfThreePlanes) {
     objects.push_back(build_object_touch(wall.mesh(), {.tracker = TrackerChoice::kGodObject},
                                          {.spring = {.stiffness = kStiffness}})
                           .value());
-    SceneTouch scene(std::move(objects));
+    SceneTouch scene(std::move(objects), SharedProxy::kYes);
     const std::array<ActivePlane, 3> planes{
         ActivePlane{{std::sin(kLeft), 0, std::cos(kLeft)}, 0},
         ActivePlane{{-std::sin(kRight), 0, std::cos(kRight)}, 0}, ActivePlane{n, n.y() * 0.004}};

@@ -59,9 +59,10 @@ TriangleMesh post_mesh() {
 
 SceneTouch one_object(const TriangleMesh& mesh, TrackerChoice tracker) {
   std::vector<std::unique_ptr<ObjectTouch>> objects;
-  objects.push_back(
-      build_object_touch(mesh, {.tracker = tracker}, {.spring = {.stiffness = 800}}).value());
-  return SceneTouch(std::move(objects));
+  objects.push_back(build_object_touch(mesh, {.tracker = tracker},
+                                       {.spring = {.stiffness = 800}, .union_of_parts = true})
+                        .value());
+  return SceneTouch(std::move(objects), SharedProxy::kYes);
 }
 
 TEST(OverlappingParts, AreThoseWhoseBoxesOverlap) {
@@ -113,12 +114,12 @@ TEST(WorldParts, AreFeltAsSeveralObjectsAre) {
 TEST(WorldParts, AreFeltOnABodyThatMoves) {
   const TriangleMesh mesh = post_mesh();
   auto object = build_object_touch(mesh, {.tracker = TrackerChoice::kGodObject},
-                                   {.spring = {.stiffness = 800}});
+                                   {.spring = {.stiffness = 800}, .union_of_parts = true});
   std::vector<std::unique_ptr<ObjectTouch>> objects;
   objects.push_back(
       move_object(std::move(object).value(), mesh, {.mass = 0.5, .damping = 2}, {.stiffness = 800})
           .value());
-  SceneTouch scene(std::move(objects));
+  SceneTouch scene(std::move(objects), SharedProxy::kYes);
   for (int i = 0; i < 2500; ++i) {
     scene(at({-0.015 + 1e-5 * std::max(0, i - 900), 0.001, std::max(-0.003, 0.004 - 1e-5 * i)}));
   }
@@ -126,7 +127,9 @@ TEST(WorldParts, AreFeltOnABodyThatMoves) {
 }
 
 TEST(WorldParts, OneSettingSetsAllParts) {
-  auto object = build_object_touch(post_mesh(), {}, {.spring = {.stiffness = 800}}).value();
+  auto object =
+      build_object_touch(post_mesh(), {}, {.spring = {.stiffness = 800}, .union_of_parts = true})
+          .value();
   LiveSettings settings(2000, 10);
   object->list_settings(settings);
   ASSERT_EQ(settings.list().size(), 2u);
