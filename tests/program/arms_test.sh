@@ -136,7 +136,7 @@ expect 0 '' "$thimble" identify --arm falcon --seconds 10 --output found.yaml
 expect 0 'torque_constant: .* 1 A being 1000 motor values \[I ' cat found.yaml
 expect 0 '^ *# delay from force to motion: 0\.00[0-9]* ' cat found.yaml
 expect_run 0 .ticks == 100 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm found.yaml --duration 0.1
-expect_error 4 vendor "$thimble" identify --arm inverse3
+expect_error 4 Vendor-driven "$thimble" identify --arm inverse3
 
 # Unsafe limits: an error with file and line, in any file.
 for wrong in 's/force_max: 5 /force_max: 100 /' 's/soft_start: 0.3/soft_start: 0/' \

@@ -20,7 +20,7 @@ if [ -n "${THIMBLE_LONG:-}" ]; then
   } >CMakeLists.txt
   { cmake -S . -B build && cmake --build build; } >said 2>&1 || fail "CMake: $(cat said)"
   mv build/touch by_cmake
-  see '^Force +[0-9.]+ N at most' ./by_cmake
+  see '^Force +[0-9.]+ N maximum' ./by_cmake
 fi
 c++ $(pkg-config --cflags thimble) -O0 touch.cpp -o by_pkg_config $(pkg-config --libs thimble) 2>said ||
   fail "pkg-config: $(cat said)"
@@ -28,5 +28,5 @@ c++ $(pkg-config --cflags thimble) -O0 touch.cpp -o by_pkg_config $(pkg-config -
 says guide/cpp.md 'For another prefix, run `export XDG_DATA_DIRS=~/thimble/share:/usr/share`'
 share=$(pkg-config --variable=prefix thimble)/share
 export XDG_DATA_DIRS=$share:/usr/share
-see '^Force +[0-9.]+ N at most' ./by_pkg_config
+see '^Force +[0-9.]+ N maximum' ./by_pkg_config
 see '6000 ticks of rubber' thimble export touch.h5 --csv touch.csv

@@ -10,7 +10,7 @@ see 'udev rule' cat doctor.txt
 rule=$(sed -n 's/^ *-> sudo cp \([^ ]*\) .*/\1/p' doctor.txt)
 [ -z "$rule" ] || [ -e "$rule" ] || fail "doctor names $rule, which is not there"
 
-says guide/commands.md 'a simulated arm as a USB device of this machine (root)'
+says guide/commands.md 'makes a simulated arm a USB device of this machine (needs root)'
 thimble plug falcon --port 0 >plug.txt 2>&1 &
 plug=$!
 wait_for 'on port [0-9]+ as USB device' plug.txt

@@ -18,7 +18,7 @@ if ! python3 -c 'import thimble' 2>/dev/null; then
   echo "  NOT TESTED: the series in Python; the package or python3-numpy is missing."
   exit 0
 fi
-says guide/python.md '`set` changes values of any scene by their path'
+says guide/python.md '`set` changes values of any scene.'
 says guide/python.md '`run.to_pandas()` gives all columns as a DataFrame (Debian: python3-pandas), `run.plot()` force and depth as a matplotlib figure'
 cat >series.py <<'END'
 import importlib.util

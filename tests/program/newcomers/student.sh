@@ -4,10 +4,10 @@ source "$(dirname "$0")/follow.sh"
 
 says guide/index.md 'Without an arm on the desk you use a simulated one'
 says guide/index.md 'thimble run elephant --report out'
-says guide/index.md 'The summary lists contacts, forces and how evenly the loop ran.'
+says guide/index.md 'The summary lists contacts, forces and how regular the loop'
 scene=water_balloon  # needs no scan
 [ -z "${THIMBLE_LONG:-}" ] || scene=elephant
-see '^Force +[0-9.]+ N at most' thimble run $scene --report out
+see '^Force +[0-9.]+ N maximum' thimble run $scene --report out
 says guide/index.md '`out/` holds pictures, `report.json`, and `index.html`'
 see '"force_N"' cat out/report.json
 ! has gnuplot || see PNG head -c 4 out/path_on_mesh.png

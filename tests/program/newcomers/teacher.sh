@@ -2,7 +2,7 @@
 # A teacher in class: a run that others follow as text, a page for any browser, a picture, an animation.
 source "$(dirname "$0")/follow.sh"
 
-says guide/viewer.md '`thimble view RUN --text` does so without a screen'
+says guide/viewer.md '`thimble view RUN --text` prints to the terminal and needs no screen'
 thimble run clay --clock wall --duration 60 --name class_$$ --no-view --record clay.h5 >run.txt 2>&1 &
 run=$!
 for _ in $(seq 100); do

@@ -22,7 +22,7 @@ std::int64_t steady_ns() {
 class Call {
  public:
   Call(const char* name, char id, bool needs_open = true) : lock_(mock().mutex), name_(name) {
-    if (id != 0) wrong("with another number");
+    if (id != 0) wrong("with another arm's number");
     if (needs_open && !mock().open) wrong("before open or after close");
     if (mock().arm.time_ns == 0) mock().arm.time_ns = steady_ns();
     mock().arm.advance_to(steady_ns());
@@ -122,7 +122,7 @@ int dhdGetStatus(int status[17], char id) {
 }
 int dhdSetWatchdog(unsigned char duration, char id) {
   Call call("dhdSetWatchdog", id);
-  call.expect(mock().expert, "by who is no expert");
+  call.expect(mock().expert, "without expert functions");
   call.expect(duration > 0, "switches it off");
   call.expect(duration >= 80, "shorter than 10 ms");
   mock().watchdog = call.answer() == 0;
@@ -141,13 +141,13 @@ int dhdSetBrakes(int on, char id) {
 int dhdEnableForce(unsigned char on, char id) {
   Call call("dhdEnableForce", id);
   if (on != 0) {
-    call.expect(mock().asked_zero && mock().initialised, "for an arm that does not know its zero");
+    call.expect(mock().asked_zero && mock().initialised, "for an uninitialised arm");
     call.expect(mock().watchdog, "before the watchdog");
     call.expect(mock().gravity, "before gravity compensation");
     call.expect(!mock().brakes, "with the brakes on");
     call.expect(!mock().expert, "by an expert");
   } else {
-    call.expect(mock().taken.empty() || mock().taken.back().isZero(0), "off while a force stands");
+    call.expect(mock().taken.empty() || mock().taken.back().isZero(0), "off during a force");
   }
   mock().force_on = on != 0 && call.answer() == 0;
   return call.answer();
@@ -201,7 +201,7 @@ unsigned int dhdGetButtonMask(char id) {
 int dhdSetForce(double x, double y, double z, char id) {
   Call call("dhdSetForce", id);
   const Eigen::Vector3d f(x, y, z);
-  call.expect(f.allFinite(), "with what is no number");
+  call.expect(f.allFinite(), "with NaN or infinity");
   call.expect(f.isZero(0) || mock().force_on, "before the forces are on");
   if (call.answer() < 0) return -1;
   mock().arm.f_T_B = mock().tripped ? Eigen::Vector3d(0, 0, 0) : f;

@@ -98,10 +98,10 @@ void hdDisableDevice(unsigned device) {
   const std::lock_guard tasks_lock(scheduler().mutex);
   const std::lock_guard lock(mock().mutex);
   expect(scheduler().tasks.empty(), "hdDisableDevice with a callback scheduled");
-  expect(device == kDevice && mock().open, "hdDisableDevice of what is not open");
+  expect(device == kDevice && mock().open, "hdDisableDevice of a closed device");
   expect(!mock().scheduler, "hdDisableDevice while the scheduler runs");
   expect(mock().taken.empty() || mock().taken.back().isZero(0),
-         "hdDisableDevice while a force stands");
+         "hdDisableDevice during a force");
   mock().open = mock().force_on = mock().asked_calibration = false;
   ++mock().closed;
 }
@@ -123,7 +123,7 @@ void hdGetIntegerv(unsigned name, int* values) {
     *values = mock().styles;
     return;
   }
-  expect(name == 0x2000, "hdGetIntegerv of another number");
+  expect(name == 0x2000, "hdGetIntegerv of an unknown parameter");
   expect(mock().frame, "hdGetIntegerv outside of a frame");
   *values = mock().arm.buttons;
 }
@@ -148,15 +148,15 @@ void hdGetDoublev(unsigned name, double* values) {
       values[12 + column] = 1000 * arm.p_BT[column];
     }
   } else {
-    expect(false, "hdGetDoublev of another number");
+    expect(false, "hdGetDoublev of an unknown parameter");
   }
 }
 void hdSetDoublev(unsigned name, const double* values) {
   const std::lock_guard lock(mock().mutex);
-  expect(name == 0x2700, "hdSetDoublev of another number");
+  expect(name == 0x2700, "hdSetDoublev of an unknown parameter");
   expect(mock().frame, "hdSetDoublev outside of a frame");
   const Eigen::Vector3d f(values[0], values[1], values[2]);
-  expect(f.allFinite(), "a force that is no number");
+  expect(f.allFinite(), "a force that is NaN or infinite");
   expect(f.isZero(0) || mock().force_on, "a force before forces are on");
   expect(f.norm() <= mock().nominal + 1e-9, "more than the nominal force");
   mock().arm.f_T_B =
@@ -165,7 +165,7 @@ void hdSetDoublev(unsigned name, const double* values) {
 }
 void hdEnable(unsigned capability) {
   const std::lock_guard lock(mock().mutex);
-  expect(capability == 0x4000, "hdEnable of another capability");
+  expect(capability == 0x4000, "hdEnable of an unknown capability");
   expect(mock().open && mock().asked_calibration && mock().calibrated,
          "forces on before the arm is calibrated");
   mock().force_on = true;
@@ -193,7 +193,7 @@ unsigned hdCheckCalibration() {
 void hdUpdateCalibration(unsigned style) {
   const std::lock_guard lock(mock().mutex);
   expect(mock().open && mock().scheduler, "hdUpdateCalibration without a scheduler");
-  expect((static_cast<int>(style) & mock().styles) != 0, "a style that the device does not have");
+  expect((static_cast<int>(style) & mock().styles) != 0, "an unsupported style");
   ++mock().calibrations;
   mock().calibrated = true;
 }
@@ -219,7 +219,7 @@ unsigned long hdScheduleAsynchronous(unsigned (*call)(void*), void* data, unsign
   {
     const std::lock_guard mock_lock(mock().mutex);
     expect(mock().open, "hdScheduleAsynchronous before hdInitDevice");
-    expect(call != nullptr, "hdScheduleAsynchronous of nothing");
+    expect(call != nullptr, "hdScheduleAsynchronous without a callback");
   }
   if (call == nullptr) return 0;
   const unsigned long handle = scheduler().next++;
@@ -231,7 +231,7 @@ void hdUnschedule(unsigned long handle) {
   const std::size_t erased = std::erase_if(
       scheduler().tasks, [handle](const auto& task) { return task.second.first == handle; });
   const std::lock_guard mock_lock(mock().mutex);
-  expect(erased == 1, "hdUnschedule of no task");
+  expect(erased == 1, "hdUnschedule of an unknown task");
 }
 
 }  // extern "C"

@@ -108,7 +108,26 @@ class ContactForceLaw {
 
   /// Returns the force of the object on the hand in this tick. Real-time: safe.
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
-    return respond(state, contact_.update(state), contact_);
+    driver::ForceCommand command;
+    const ContactState& contact = contact_.update(state);
+    // Written so that a NaN depth means no contact and no force.
+    if (contact.touching && contact.depth > 0) {
+      SurfaceResponse response{.contact = contact};
+      feel(state, response);
+      command.f_T_W = response.f_T_W;
+      command.touch = {.in_contact = true,
+                       .object = 0,
+                       .feature = contact.triangle,
+                       .depth = response.contact.depth,
+                       .p_WP = response.contact.p_WP,
+                       .n_W = response.contact.n_W,
+                       .hops = contact.hops};
+      touching_ = true;
+    } else if (touching_) {
+      std::apply([](auto&... stage) { (stage.leave(), ...); }, stages_);
+      touching_ = false;
+    }
+    return command;
   }
 
   /// Returns the force of a contact that was found at `state.p_WT`. `source` is the contact stage
@@ -120,7 +139,7 @@ class ContactForceLaw {
     // Written so that a NaN depth means no contact and no force.
     if (contact.touching && contact.depth > 0) {
       SurfaceResponse response{.contact = contact};
-      feel(state, source, response);
+      feel_at(state, source, response);
       command.f_T_W = response.f_T_W;
       command.touch = {.in_contact = true,
                        .object = 0,
@@ -164,9 +183,25 @@ class ContactForceLaw {
   Contact& contact() noexcept { return contact_; }
 
  private:
+  void feel(const driver::DeviceState& state, SurfaceResponse& response) noexcept {
+    if constexpr ((ClosestPointStage<Stages> || ...)) {
+      const ClosestSurfacePoint closest = closest_point_of(contact_, state.p_WT);
+      const auto run = [&](auto& stage) {
+        if constexpr (requires { stage.touch_at(closest, state, response); }) {
+          stage.touch_at(closest, state, response);
+        } else {
+          stage.touch(state, response);
+        }
+      };
+      std::apply([&](auto&... stage) { (run(stage), ...); }, stages_);
+    } else {
+      std::apply([&](auto&... stage) { (stage.touch(state, response), ...); }, stages_);
+    }
+  }
+
   template <class Source>
-  void feel(const driver::DeviceState& state, const Source& source,
-            SurfaceResponse& response) noexcept {
+  void feel_at(const driver::DeviceState& state, const Source& source,
+               SurfaceResponse& response) noexcept {
     if constexpr ((ClosestPointStage<Stages> || ...)) {
       const ClosestSurfacePoint closest = closest_point_of(source, state.p_WT);
       const auto run = [&](auto& stage) {

@@ -34,7 +34,8 @@ class THIMBLE_EXPORT SceneTouch {
   ~SceneTouch();
 
   /// Returns the force of the scene on the hand. Real-time: safe.
-  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
+  [[gnu::always_inline]] driver::ForceCommand operator()(
+      const driver::DeviceState& state) noexcept {
     if (world_) [[unlikely]]
       return in_world(state);
     driver::ForceCommand sum;
@@ -94,7 +95,8 @@ class THIMBLE_EXPORT SceneTouch {
   const ContactWorld* world() const noexcept { return world_.get(); }
 
  private:
-  void add(std::size_t i, const driver::DeviceState& state, driver::ForceCommand& sum) noexcept {
+  [[gnu::always_inline]] void add(std::size_t i, const driver::DeviceState& state,
+                                  driver::ForceCommand& sum) noexcept {
     const driver::ForceCommand one = objects_[i]->update(state);
     sum.f_T_W += one.f_T_W;
     sum.stored += one.stored;

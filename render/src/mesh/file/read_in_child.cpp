@@ -51,7 +51,7 @@ driver::Error unreadable(const std::string& kind, const std::string& reason) {
   std::string capitals = kind;
   std::transform(capitals.begin(), capitals.end(), capitals.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return {"this is no " + capitals + " file that can be read (" + reason + ")."};
+  return {"the " + capitals + " file could not be read (" + reason + ")."};
 }
 
 driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::string& kind,

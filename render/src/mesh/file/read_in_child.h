@@ -18,7 +18,7 @@ using MeshReader = std::function<driver::Result<TriangleMesh>(MeshFileInfo& info
 /// slowest format, and four times the memory of the hungriest.
 driver::SandboxLimits limits_of(std::size_t bytes);
 
-/// Returns the error about a damaged file: "this is no GLTF file that can be read (it ...)".
+/// Returns the error about a damaged file: "the GLTF file could not be read (it ...)".
 driver::Error unreadable(const std::string& kind, const std::string& reason);
 
 /// Runs a reader in a separate process with limits of time and memory. The error is the reader's,

@@ -53,7 +53,7 @@ TEST(YamlReader, RejectsValuesThatAreNotFiniteOrInRange) {
 }
 
 TEST(YamlReader, NamesTheMissingKey) {
-  EXPECT_EQ(mistakes_in("name: a\n"), "arm.yaml:1: stiffness: is missing here.");
+  EXPECT_EQ(mistakes_in("name: a\n"), "arm.yaml:1: stiffness: is missing.");
 }
 
 TEST(YamlReader, SuggestsTheNearestKnownKeyForAnUnknownOne) {

@@ -124,7 +124,7 @@ TEST(WorldBody, AFarSolidChangesNothing) {
     alone.push_back(kind.build());
     together.push_back(kind.build());
     together.push_back(block({.centre = {0, 0, 0.5}, .half = {0.01, 0.01, 0.01}}));
-    SceneTouch one(std::move(alone)), two(std::move(together));
+    SceneTouch one(std::move(alone)), two(std::move(together), SharedProxy::kYes);
     ASSERT_NE(two.world(), nullptr) << kind.name;
     Tip tip_one(one), tip_two(two);
     double most = 0, largest = 0;

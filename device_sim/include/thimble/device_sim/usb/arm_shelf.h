@@ -50,7 +50,7 @@ struct ShelfEntry {
 };
 inline constexpr std::array<ShelfEntry, 4> kShelf{{
     {"woodenhaptics", "WoodenHaptics on its mbed board, HID 1234:0006, 8-byte reports"},
-    {"polhem", "Polhem on its mbed board, HID 1234:0006, 14-byte reports as answers only"},
+    {"polhem", "Polhem on its mbed board, HID 1234:0006, 14-byte reports when asked"},
     {"polhem-64", "Polhem on a Teensy, HID 16c0:0486, the same reports in 64 bytes"},
     {"falcon", "Novint Falcon, FTDI 0403:cb48, with boot loader, firmware and homing"},
 }};
