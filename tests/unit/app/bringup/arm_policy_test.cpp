@@ -351,7 +351,7 @@ TEST_F(ArmPolicyTest, SessionGateFollowsThePolicy) {
     EXPECT_EQ(report.feel_check,
               unchecked ? scene::FeelCheckState::kUnchecked : scene::FeelCheckState::kNone);
     EXPECT_EQ(holds(summary(report), "UNCHECKED"), unchecked);
-    EXPECT_EQ(holds(summary(report), "at most 0.50 N"), !unchecked);
+    EXPECT_EQ(holds(summary(report), "limited to 0.50 N"), !unchecked);
   }
 }
 

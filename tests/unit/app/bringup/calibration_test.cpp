@@ -168,7 +168,7 @@ const Miswired kMiswired[] = {
      [](auto& f) {
        f.wiring.encoder_of = {0, 2, 1};
      },
-     "Encoder 2 does what 3 should: they are swapped."},
+     "Encoder 2 responds as 3 should. They are swapped."},
     {"MotorBackwards", [](auto& f) { f.wiring.motor_gain[0] = -1; }, "Motor 1 pulls backwards."},
     {"SecondMotorBackwards", [](auto& f) { f.wiring.motor_gain[1] = -1; },
      "Motor 2 pulls backwards."},
@@ -179,7 +179,7 @@ const Miswired kMiswired[] = {
      [](auto& f) {
        f.wiring.motor_of = {1, 0, 2};
      },
-     "Motor 1 does what 2 should: they are swapped."},
+     "Motor 1 responds as 2 should. They are swapped."},
     {"MotorsSwappedAndOneBackwards",
      [](auto& f) {
        f.wiring.motor_of = {0, 2, 1};

@@ -180,7 +180,7 @@ TEST_F(DoctorTest, BoardOfUnknownFormIsNeverOpened) {
   usb_.plug("1-3", "1234", "0006", "X1", 1, 4);
   usb_.bind("1-3", 0, "usbhid");
   usb_.add_hidraw("1-3", 0, "hidraw5", 64);
-  EXPECT_NE(finding("64 bytes in and 64 out").what.find("never opened"), std::string::npos);
+  EXPECT_NE(finding("64 bytes in and 64 bytes out").what.find("never opened"), std::string::npos);
 }
 
 TEST_F(DoctorTest, NamesTheProgramThatHasTheArm) {
@@ -205,7 +205,7 @@ TEST_F(DoctorTest, FindsASlowFrequencyGovernor) {
   plug_woody();
   EXPECT_EQ(finding("full speed").health, Health::kGood);
   usb_.write(kCpus + "cpu1/cpufreq/scaling_governor", "powersave");
-  EXPECT_EQ(finding("governor powersave").health, Health::kAdvice);
+  EXPECT_EQ(finding("governor is powersave").health, Health::kAdvice);
   EXPECT_NE(finding("governor").remedy.find("performance"), std::string::npos);
   EXPECT_EQ(troubles(), 1u);
 }

@@ -138,7 +138,7 @@ TEST_F(LinkedArmTest, FileOmitsWhatTheVendorSoftwareKnows) {
       holds(mistake("geometry: {height: 0.1, length_b: 0.1, length_c: 0.1}\n"), "geometry"));
   EXPECT_TRUE(holds(mistake("joints: {}\n"), "joints"));
   EXPECT_TRUE(holds(mistake("simulation: {}\n"), "simulation"));
-  EXPECT_TRUE(holds(mistake("board: falcon_ftdi\n"), "does not speak haply_service"));
+  EXPECT_TRUE(holds(mistake("board: falcon_ftdi\n"), "does not use the protocol haply_service"));
 }
 
 }  // namespace

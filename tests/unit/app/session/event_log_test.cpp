@@ -153,7 +153,7 @@ TEST_F(EventLogTest, ReportsTheNumberOfLostEvents) {
     }
   }
   const auto lines = log();
-  const std::regex lacks(R"(^warning (\d+) events came too quickly and are missing here\.)");
+  const std::regex lacks(R"(^warning (\d+) events were lost because the log could not keep up\.)");
   std::size_t missing = 0;
   for (const std::string& line : lines) {
     std::smatch found;

@@ -198,7 +198,7 @@ TEST_F(ReplugWatchTest, FindsAnArmDisconnectedAfterAnotherFault) {
   EXPECT_TRUE(told("Force is off (over_speed)"));
   first_.lost = true;
   pass(2);
-  EXPECT_TRUE(told("The arm is disconnected."));
+  EXPECT_TRUE(told("The arm was disconnected."));
   enter_ = true;
   pass(1);
   EXPECT_EQ(force(), 0);

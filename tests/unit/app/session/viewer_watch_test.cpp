@@ -57,10 +57,10 @@ TEST_F(ViewerWatchTest, LogsAttachedAndDetachedViewers) {
   EXPECT_EQ(step(), "");
   const std::string self = std::to_string(getpid());
   auto viewer = view();
-  EXPECT_EQ(step(), "info tick 5, 0.005 s: Viewer " + self + " looks on.\n");
+  EXPECT_EQ(step(), "info tick 5, 0.005 s: Viewer " + self + " has attached.\n");
   EXPECT_EQ(step(10), "");
   viewer.reset();
-  EXPECT_EQ(step(), "info tick 5, 0.005 s: Viewer " + self + " has left.\n");
+  EXPECT_EQ(step(), "info tick 5, 0.005 s: Viewer " + self + " has detached.\n");
   EXPECT_EQ(step(10), "");
 }
 
@@ -79,12 +79,12 @@ TEST_F(ViewerWatchTest, LogsAViewerThatDied) {
   }
   close(ready[1]);
   ASSERT_EQ(read(ready[0], &byte, 1), 1);
-  EXPECT_EQ(step(), "info tick 5, 0.005 s: Viewer " + std::to_string(child) + " looks on.\n");
+  EXPECT_EQ(step(), "info tick 5, 0.005 s: Viewer " + std::to_string(child) + " has attached.\n");
   close(leave[1]);
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
   EXPECT_EQ(status, 0);
-  EXPECT_EQ(step(), "info tick 5, 0.005 s: Viewer " + std::to_string(child) + " has left.\n");
+  EXPECT_EQ(step(), "info tick 5, 0.005 s: Viewer " + std::to_string(child) + " has detached.\n");
   close(ready[0]);
   close(leave[0]);
 }

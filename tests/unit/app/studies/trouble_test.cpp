@@ -185,11 +185,11 @@ TEST(Trouble, GrooveFacetsAreReportedForTheNaiveTracker) {
   std::vector<std::string> warnings;
   // Above 20 mN before both facets of a concave edge held the tip at once.
   EXPECT_LE(run_seed(kSeed, "", "", &warnings).limit_cycle, 1e-3);
-  EXPECT_FALSE(any_has(warnings, "facets"));
+  EXPECT_FALSE(any_has(warnings, "concave edges"));
   const std::string plain = "    size: 0.0425869\n";
   const std::string projected = plain + "    contact: {tracker: normal_projection}\n";
   run_seed(kSeed, plain, projected, &warnings);
-  EXPECT_TRUE(any_has(warnings, "facets"));
+  EXPECT_TRUE(any_has(warnings, "concave edges"));
 }
 
 TEST(Trouble, WarningNamesTooShortTexture) {

@@ -378,7 +378,7 @@ TEST(ClayRefinement, RefusesIncompatibleSettings) {
   }
   ClayChoice small = good;
   small.triangles = 1000;
-  EXPECT_NE(refused(small, false, false).find("1280 triangles already"), std::string::npos);
+  EXPECT_NE(refused(small, false, false).find("already has 1280 triangles"), std::string::npos);
 }
 
 }  // namespace
