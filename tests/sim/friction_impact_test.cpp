@@ -36,7 +36,7 @@ class SymmetricSlewLimit {
 
 struct Impact {
   double restitution = 0;  // speed when leaving over speed when entering
-  double most_force = 0;   // N
+  double max_force = 0;    // N
 };
 
 /// Throws arm and hand against the surface at 45 degrees. The hand moves along as a mass and, if
@@ -78,7 +78,7 @@ Impact impact(std::string_view name, double speed, double phase, bool held, doub
     Vector3d f_W = feel.f_T_W;
     if (gate != nullptr) f_W = gate->pass(f_W, state.v_WT, k == 0 ? 0 : 1e-3).f_T_W();
     if (symmetric) f_W = slew.pass(f_W);
-    result.most_force = std::max(result.most_force, f_W.norm());
+    result.max_force = std::max(result.max_force, f_W.norm());
     axis.step(x, {.force = f_W.x()}, 1'000'000);
     axis.step(z, {.force = f_W.z()}, 1'000'000);
     if (z.x > 0) break;
@@ -117,7 +117,7 @@ TEST(HardCaseRiseLimit, SaturatingGateReturnsNoSpeed) {
                                  .stall_ns = 20'000'000,
                                  .watchdog_ns = 100'000'000});
         const Impact one = impact(name, speed, (i + 0.5) / 100, true, 2000, &gate, false);
-        most = std::max(most, one.most_force);
+        most = std::max(most, one.max_force);
         ASSERT_LE(one.restitution, 1) << name << " " << speed << " " << i;
         largest = std::max(largest, one.restitution);
       }

@@ -108,7 +108,7 @@ TEST(HardCaseNaiveFriction, HasTheMeanAndRippleOfItsLaw) {
 }
 
 TEST(HardCaseFrictionStop, IsSilentAtAnyDelay) {
-  double most_force = 0, most_way = 0, most_changes = 0, least_held = 1;
+  double max_force = 0, max_path = 0, max_changes = 0, min_held = 1;
   for (int delay = 0; delay <= 3; ++delay) {
     for (int i = 0; i < 40; ++i) {
       FrictionRigSettings rig;
@@ -119,17 +119,17 @@ TEST(HardCaseFrictionStop, IsSilentAtAnyDelay) {
       EXPECT_LE(rest.x_hf, 0.05e-6) << delay << " " << i;
       EXPECT_EQ(rest.sign_changes, 0) << delay << " " << i;
       EXPECT_GT(rest.held, 0.25) << delay << " " << i;
-      most_force = std::max(most_force, rest.force_hf);
-      most_way = std::max(most_way, rest.x_hf);
-      most_changes = std::max(most_changes, rest.sign_changes);
-      least_held = std::min(least_held, rest.held);
+      max_force = std::max(max_force, rest.force_hf);
+      max_path = std::max(max_path, rest.x_hf);
+      max_changes = std::max(max_changes, rest.sign_changes);
+      min_held = std::min(min_held, rest.held);
     }
   }
   const char* const kStops = "160 stops, arm with 0.04 N of dry friction";
-  record_hard_case(14, kStops, "<= force above 50 Hz, RMS", 1e3 * most_force, 1, "mN");
-  record_hard_case(14, kStops, "<= way above 50 Hz, RMS", 1e6 * most_way, 0.05, "um");
-  record_hard_case(14, kStops, "== changes of sign per second", most_changes, 0, "1/s");
-  record_hard_case(14, kStops, "> force that it continues to hold", least_held, 0.25, "N");
+  record_hard_case(14, kStops, "<= force above 50 Hz, RMS", 1e3 * max_force, 1, "mN");
+  record_hard_case(14, kStops, "<= way above 50 Hz, RMS", 1e6 * max_path, 0.05, "um");
+  record_hard_case(14, kStops, "== changes of sign per second", max_changes, 0, "1/s");
+  record_hard_case(14, kStops, "> force that it continues to hold", min_held, 0.25, "N");
 }
 
 // [PHYSICS 7] proposes that the last second flickers no more than the first. No limit cycle
@@ -137,7 +137,7 @@ TEST(HardCaseFrictionStop, IsSilentAtAnyDelay) {
 // test bounds its span, which must not grow: two counts as in case 5, and an RMS below half a
 // quantum.
 TEST(HardCaseFrictionStop, ArmWithoutDryFrictionIsQuiet) {
-  double most_share = 0, most_changes = 0, most_span = 0;
+  double max_share = 0, max_changes = 0, max_span = 0;
   double late_span = 0, late_share = 0;
   for (int delay = 0; delay <= 3; ++delay) {
     for (int i = 0; i < 40; ++i) {
@@ -153,9 +153,9 @@ TEST(HardCaseFrictionStop, ArmWithoutDryFrictionIsQuiet) {
       EXPECT_LE(rest.force_hf, 0.5 * stiffness * 3e-5) << delay << " " << i;
       EXPECT_EQ(rest.sign_changes, 0) << delay << " " << i;
       EXPECT_LE(rest.force_span, 2 * stiffness * 3e-5) << delay << " " << i;
-      most_share = std::max(most_share, rest.force_hf / (stiffness * 3e-5));
-      most_changes = std::max(most_changes, rest.sign_changes);
-      most_span = std::max(most_span, rest.force_span / (stiffness * 3e-5));
+      max_share = std::max(max_share, rest.force_hf / (stiffness * 3e-5));
+      max_changes = std::max(max_changes, rest.sign_changes);
+      max_span = std::max(max_span, rest.force_span / (stiffness * 3e-5));
       if (i % 8 != 0) continue;
       const Rest later = rest_after_stop(bristle, rig, 0.01 + i * 3e-5 / 40, 23.3);
       late_span = std::max(late_span, later.force_span / (stiffness * 3e-5));
@@ -163,9 +163,9 @@ TEST(HardCaseFrictionStop, ArmWithoutDryFrictionIsQuiet) {
     }
   }
   const char* const kStops = "160 stops, arm without dry friction";
-  record_hard_case(14, kStops, "<= force above 50 Hz over one quantum", most_share, 0.5, "1");
-  record_hard_case(14, kStops, "== changes of sign per second", most_changes, 0, "1/s");
-  record_hard_case(14, kStops, "<= span of the force in quanta", most_span, 2, "1");
+  record_hard_case(14, kStops, "<= force above 50 Hz over one quantum", max_share, 0.5, "1");
+  record_hard_case(14, kStops, "== changes of sign per second", max_changes, 0, "1/s");
+  record_hard_case(14, kStops, "<= span of the force in quanta", max_span, 2, "1");
   record_hard_case(14, "20 of these, 20 s later", "<= span of the force in quanta", late_span, 2,
                    "1");
   record_hard_case(14, "the same", "<= force above 50 Hz over one quantum", late_share, 0.5, "1");

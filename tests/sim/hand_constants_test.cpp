@@ -58,7 +58,7 @@ std::vector<device_sim::HandSettings> hands_around(device_sim::HandSettings hand
   return hands;
 }
 
-std::string told(const device_sim::HandSettings& hand) {
+std::string reported(const device_sim::HandSettings& hand) {
   char buffer[100];
   std::snprintf(buffer, sizeof buffer, "hand of %.3g kg, %.3g N/m, %.3g N s/m", hand.mass,
                 hand.stiffness, hand.damping);
@@ -94,7 +94,7 @@ TEST(HandConstants, NoHandIsThrownBackFasterByAnyShippedWall) {
       for (const double speed : {0.05, 0.2, 1.0}) {
         for (int i = 0; i < 20; ++i) {
           const double e = thrown_back(wall, speed, (i + 0.5) / 20);
-          EXPECT_LE(e, 1) << object.name << " " << object.stiffness << ", " << told(hand);
+          EXPECT_LE(e, 1) << object.name << " " << object.stiffness << ", " << reported(hand);
           most = std::max(most, e);
         }
       }
@@ -134,7 +134,7 @@ Unrest unrest_of(const scene::ArmFile& file, double rate, double stiffness, doub
       if (touch->force_rms > 0.02) ++found.loud;
       if (touch->force_rms < found.force_rms) continue;
       found.force_rms = touch->force_rms;
-      found.who = told(hand);
+      found.who = reported(hand);
     }
   }
   EXPECT_GE(found.tried, 54);

@@ -174,7 +174,7 @@ TEST(HardCaseSharpCorner, TrackersSettleInOneTick) {
       {support::box({0.02, 0.02, 0.02}), {0.019, 0.019, 0.019}, 0.004},
       {support::needle(64, 0.05, 0.01), {0, 0, 0.047}, 0.003}};
   for (const TrackerChoice tracker : kTrackers) {
-    int touching = 0, changed = 0, lost = 0, most_hops = 0;
+    int touching = 0, changed = 0, lost = 0, max_hops = 0;
     for (const Place& place : places) {
       Touched touched(place.mesh, tracker);
       support::Random random(25);
@@ -184,7 +184,7 @@ TEST(HardCaseSharpCorner, TrackersSettleInOneTick) {
         p = place.middle + random.in_box(place.size);
         const bool was_touching = touched.command().touch.in_contact;
         const driver::ForceCommand once = touched.at(p);
-        most_hops = std::max<int>(most_hops, once.touch.hops);
+        max_hops = std::max<int>(max_hops, once.touch.hops);
         lost += was_touching && !once.touch.in_contact && support::is_inside(place.mesh, p);
         if (!once.touch.in_contact) continue;
         ++touching;
@@ -200,11 +200,11 @@ TEST(HardCaseSharpCorner, TrackersSettleInOneTick) {
     EXPECT_GT(touching, 1000) << name_of(tracker);
     EXPECT_EQ(lost, 0) << name_of(tracker);
     EXPECT_EQ(changed, 0) << name_of(tracker);
-    EXPECT_LT(most_hops, kHopsMax)
-        << name_of(tracker);  // the limit of steps of a walk that does not settle
+    EXPECT_LT(max_hops, kHopsMax) << name_of(
+        tracker);  // the limit of steps of a walk that does not settle
     const std::string words = name_of(tracker) + ", wedge, corner and needle, leaps at random";
     record_hard_case(25, words, "== ticks in which a still tip changes its force", changed, 0, "1");
-    record_hard_case(25, words, "< most hops in a tick", most_hops, kHopsMax, "1");
+    record_hard_case(25, words, "< most hops in a tick", max_hops, kHopsMax, "1");
   }
 }
 
@@ -218,7 +218,7 @@ TEST(HardCaseFastStroke, CompactTrackerMatchesOffset) {
   Touched offset(ball, TrackerChoice::kOffset, NormalWeights::kAngle);
   support::Random random(26);
   Vector3d p(0.0075, 0.0001, 0.0002), axis = random.direction();
-  int most_hops = 0;
+  int max_hops = 0;
   double apart = 0;
   for (int i = 0; i < 10002; ++i) {
     const Vector3d place = i == 0 ? Vector3d(2 * p) : p;
@@ -226,17 +226,17 @@ TEST(HardCaseFastStroke, CompactTrackerMatchesOffset) {
     const driver::TouchInfo& found = compact.at(place).touch;
     ASSERT_EQ(found.in_contact, i > 0);
     apart = std::max(apart, (found.p_WP - wanted.p_WP).norm());
-    most_hops = std::max<int>(most_hops, found.hops);
+    max_hops = std::max<int>(max_hops, found.hops);
     if (i == 0) continue;
     axis = (axis + 0.3 * random.direction()).normalized();
     axis = (axis - axis.dot(p.normalized()) * p.normalized()).normalized();
     p = Eigen::AngleAxisd(0.002 / p.norm(), axis) * p;
   }
   EXPECT_LE(apart, 1e-7);
-  EXPECT_LT(most_hops, kHopsMax);
+  EXPECT_LT(max_hops, kHopsMax);
   const char* const kStroke = "compact tracker, 1e4 ticks of 2 mm";
   record_hard_case(26, kStroke, "<= proxy off the offset tracker's", 1e6 * apart, 0.1, "um");
-  record_hard_case(26, kStroke, "< most hops in a tick", most_hops, kHopsMax, "1");
+  record_hard_case(26, kStroke, "< most hops in a tick", max_hops, kHopsMax, "1");
 }
 
 /// Rounds a position to multiples of 2^-36 m, so that a shift of 1e4 m is exact.
@@ -294,8 +294,8 @@ Difference difference(const TriangleMesh& base, TrackerChoice tracker, double sc
     const double depth = 0.00325 - 0.00525 * std::cos(0.02 * i);  // from 2 mm above
     const Vector3d p = on_lattice((bump_radius(u) - depth) * u);
     const driver::TouchInfo wanted = reference.at(p).touch;
-    const driver::TouchInfo& told = copy.at(scale * p + shift).touch;
-    if (told.in_contact != wanted.in_contact) {
+    const driver::TouchInfo& reported = copy.at(scale * p + shift).touch;
+    if (reported.in_contact != wanted.in_contact) {
       ++found.other_contact;
       copy.forget();
       reference.forget();
@@ -303,8 +303,8 @@ Difference difference(const TriangleMesh& base, TrackerChoice tracker, double sc
     }
     if (!wanted.in_contact) continue;
     ++found.touching;
-    found.worst = std::max({found.worst, std::abs(told.depth / scale - wanted.depth) / size,
-                            ((told.p_WP - shift) / scale - wanted.p_WP).norm() / size});
+    found.worst = std::max({found.worst, std::abs(reported.depth / scale - wanted.depth) / size,
+                            ((reported.p_WP - shift) / scale - wanted.p_WP).norm() / size});
   }
   return found;
 }

@@ -51,14 +51,14 @@ class GatedWall {
       sent_ = gate.pass_guarded({requested, 0, 0}, {v, 0, 0}, dt, flow).f_T_W().x();
       requested_ = requested;
       max_damping = std::max(max_damping, v != 0 ? (requested_ - sent_) / v : 0);
-      most_force = std::max(most_force, std::abs(sent_));
+      max_force = std::max(max_force, std::abs(sent_));
       return sent_;
     });
   }
 
   WallRig rig;
   SafetyGate gate;
-  double max_damping = 0, most_force = 0;
+  double max_damping = 0, max_force = 0;
 
  private:
   double sent_ = 0, requested_ = 0;

@@ -167,7 +167,7 @@ TEST(HardCaseSlowModel, ThrownTipReturnsNoSpeed) {
   const scene::ArmFile arm = phantom();
   scene::ArmFile low_impedance = arm;
   low_impedance.simulated.hand.damping /= 10;
-  double most = 0, most_over_direct = 0, fastest = 0;
+  double most = 0, max_over_direct = 0, fastest = 0;
   for (const Feel feel : {Feel::kEven, Feel::kStiffening, Feel::kSoftening}) {
     for (const Shape shape : {Shape::kPlane, Shape::kBall, Shape::kBowl}) {
       const SlowSurface surface{.shape = shape, .feel = feel};
@@ -181,7 +181,7 @@ TEST(HardCaseSlowModel, ThrownTipReturnsNoSpeed) {
           EXPECT_LE(thrown.e(), 1)
               << static_cast<int>(feel) << static_cast<int>(shape) << " " << height << " " << phase;
           most = std::max(most, thrown.e());
-          most_over_direct = std::max(most_over_direct, light.e() / direct.e());
+          max_over_direct = std::max(max_over_direct, light.e() / direct.e());
           fastest = std::max(fastest, thrown.in);
         }
       }
@@ -189,12 +189,12 @@ TEST(HardCaseSlowModel, ThrownTipReturnsNoSpeed) {
   }
   // The model of a surface that softens may be stiffer than the present surface, so holding it for
   // a tick adds slightly more energy. Differences between models also change the speed.
-  EXPECT_LE(most_over_direct, 1.05);
+  EXPECT_LE(max_over_direct, 1.05);
   EXPECT_GT(fastest, 1);
   record_hard_case(40, "60 Hz model, 9 surfaces, 0.03 to 1.1 m/s, 4 phases, wire and gate",
                    "<= largest restitution", most, 1, "1");
   record_hard_case(40, "the same, a tenth of the hand's damping",
-                   "<= restitution over that of the same surface at 1 kHz", most_over_direct, 1.05,
+                   "<= restitution over that of the same surface at 1 kHz", max_over_direct, 1.05,
                    "1");
 }
 

@@ -360,7 +360,7 @@ TEST(HardCaseEncoderFault, ImpossibleGlitchesAreDropped) {
   // The driver rejects a larger jump as impossible for the tip: 1000 m/s^2 for 1 ms, plus the rest
   // of its last movement.
   constexpr double kJump = 1.5e-3;  // m
-  double most = 0, most_dropped = 0;
+  double most = 0, max_dropped = 0;
   int drops = 0, missed = 0;
   for (const double step : {1e-6, 3e-6, 1e-5, 3e-5, 1e-4}) {
     for (const int glitch : {-1000, 1000, -32768}) {  // the last: a counter that wraps
@@ -384,19 +384,19 @@ TEST(HardCaseEncoderFault, ImpossibleGlitchesAreDropped) {
         if (jump < kJump) continue;
         ++drops;
         missed += press.wire.jumped == 1 ? 0 : 1;
-        most_dropped = std::max(most_dropped, moved - press.stiffness * step);
+        max_dropped = std::max(max_dropped, moved - press.stiffness * step);
       }
     }
   }
   EXPECT_EQ(drops, 43);
   EXPECT_EQ(missed, 0);
-  EXPECT_LE(most_dropped, 0.05);
+  EXPECT_LE(max_dropped, 0.05);
   record_hard_case(38, "steps of 1 to 100 um, one report off by 1000 counts or wrapped, any axis",
                    "<= largest step of force", most, kAllowed, "N");
   record_hard_case(38, "43 of these, beyond what a tip can do", "== not dropped, or more than one",
                    missed, 0, "1");
-  record_hard_case(38, "the same", "<= largest step of force beyond that of one count",
-                   most_dropped, 0.05, "N");
+  record_hard_case(38, "the same", "<= largest step of force beyond that of one count", max_dropped,
+                   0.05, "N");
 }
 
 TEST(HardCaseEncoderFault, LastingOffsetIsAFault) {

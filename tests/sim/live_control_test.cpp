@@ -91,7 +91,7 @@ driver::DeviceState state_of(const driver::TickRecord& row, double dt) {
   return state;
 }
 
-driver::TickRecord told(const driver::DeviceState& state, const driver::ForceCommand& command) {
+driver::TickRecord reported(const driver::DeviceState& state, const driver::ForceCommand& command) {
   driver::TickRecord record;
   record.v_WT = {state.v_WT.x(), state.v_WT.y(), state.v_WT.z()};
   record.f_wanted_W = {command.f_T_W.x(), command.f_T_W.y(), command.f_T_W.z()};
@@ -148,7 +148,7 @@ Turned turn(const std::filesystem::path& scene_file, const std::string& knob_nam
     turned.felt = std::max(turned.felt, (f_now.f_T_W - f_plain.f_T_W).norm());
     lowest = std::min(lowest, now.knobs.value(knob));
     highest = std::max(highest, now.knobs.value(knob));
-    last = told(state, f_now);
+    last = reported(state, f_now);
   }
   turned.range = (highest - lowest) / (bounds.max - bounds.min);
   return turned;

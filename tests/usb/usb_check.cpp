@@ -101,8 +101,8 @@ int denied(const VirtualArm& arm) {
   if (!found) return verdict(false, arm.name + " denied", found.error().message);
   const driver::WallClock clock(0);
   const auto wire = arm.open(*found, clock);
-  const bool told = !wire && wire.error().message.find("70-thimble.rules") != std::string::npos;
-  return verdict(told && !found->accessible, arm.name + " closed to strangers",
+  const bool reported = !wire && wire.error().message.find("70-thimble.rules") != std::string::npos;
+  return verdict(reported && !found->accessible, arm.name + " closed to strangers",
                  wire ? "it was opened" : wire.error().message);
 }
 
@@ -217,11 +217,11 @@ int hang(const VirtualArm& arm) {
   if (!bench) return verdict(false, arm.name + " opened", bench.error().message);
   if (!(*bench)->device->activate()) return 1;
   Ticker ticker(**bench);
-  bool told = false;
+  bool reported = false;
   for (;;) {
     ticker.tick();
-    if (told || ticker.force < 0.5) continue;
-    told = true;
+    if (reported || ticker.force < 0.5) continue;
+    reported = true;
     std::printf("touching\n");
     std::fflush(stdout);
   }

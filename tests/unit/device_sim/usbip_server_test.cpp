@@ -296,23 +296,23 @@ TEST_F(AttachedHost, EndsABulkTransferAtAShortPacket) {
 
 TEST_F(AttachedHost, CutsWhatItSendsIntoPackets) {
   const std::vector<std::byte> sent(150, std::byte{9});
-  const std::uint32_t told = host_.tell(2, sent);
+  const std::uint32_t reported = host_.tell(2, sent);
   host_.frames();
-  ASSERT_TRUE(host_.done(told).has_value());
+  ASSERT_TRUE(host_.done(reported).has_value());
   EXPECT_EQ(device_.packets_taken, 3U);
   EXPECT_EQ(device_.taken, sent);
 }
 
 TEST_F(AttachedHost, HostWaitsWhileTheDeviceIsNotReady) {
   device_.silent = true;
-  const std::uint32_t asked = host_.ask(1, 8), told = host_.tell(1, std::vector<std::byte>(8));
+  const std::uint32_t asked = host_.ask(1, 8), reported = host_.tell(1, std::vector<std::byte>(8));
   host_.frames(100);
   EXPECT_FALSE(host_.done(asked).has_value());
-  EXPECT_FALSE(host_.done(told).has_value());
+  EXPECT_FALSE(host_.done(reported).has_value());
   device_.silent = false;
   host_.frames();
   EXPECT_TRUE(host_.done(asked).has_value());
-  EXPECT_TRUE(host_.done(told).has_value());
+  EXPECT_TRUE(host_.done(reported).has_value());
 }
 
 TEST_F(AttachedHost, CancelsOnlyPendingTransfers) {

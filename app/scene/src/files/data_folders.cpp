@@ -54,8 +54,8 @@ fs::path own_folder() {
     }
     if (!above.has_relative_path()) break;
   }
-  const char* told = thimble_installed_files != nullptr ? thimble_installed_files() : "";
-  for (const fs::path& folder : {fs::path(told), fs::path(THIMBLE_INSTALLED_FILES)}) {
+  const char* reported = thimble_installed_files != nullptr ? thimble_installed_files() : "";
+  for (const fs::path& folder : {fs::path(reported), fs::path(THIMBLE_INSTALLED_FILES)}) {
     if (!folder.empty() && has_both(folder)) return folder;
   }
   return {};

@@ -87,10 +87,10 @@ bool read_grip(const json& message, ArmState& state) {
 
 /// Reads an arm and its grip.
 bool read_arm(const json& message, const json& arm, ArmState& state) {
-  const json& told = member(arm, "state");
+  const json& reported = member(arm, "state");
   ArmState read = state;
-  if (!read_vector(member(told, "cursor_position"), kFarthest, read.p_BT) ||
-      !read_vector(member(told, "cursor_velocity"), kFastest, read.v_BT) ||
+  if (!read_vector(member(reported, "cursor_position"), kFarthest, read.p_BT) ||
+      !read_vector(member(reported, "cursor_velocity"), kFastest, read.v_BT) ||
       !read_grip(message, read)) {
     return false;
   }
@@ -99,8 +99,8 @@ bool read_arm(const json& message, const json& arm, ArmState& state) {
 }
 
 bool is_false(const json& status, const char* key) {
-  const json& told = member(status, key);
-  return told.is_boolean() && !told.get<bool>();
+  const json& reported = member(status, key);
+  return reported.is_boolean() && !reported.get<bool>();
 }
 
 /// Returns the reason why the positions of an arm are unreliable; empty if there is none.

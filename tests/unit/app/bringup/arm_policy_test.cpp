@@ -67,9 +67,9 @@ TEST_F(ArmPolicyTest, NamedFileOverridesTheCalibration) {
   const auto other = scene::find_real_arm_file(arm, vintage);
   ASSERT_FALSE(other);
   EXPECT_TRUE(holds(other.error().message, "thimble calibrate --device P1 --arm vintage_phantom"));
-  scene::RealArmSearch anew = vintage;
-  anew.for_calibration = true;
-  const auto calibrated = scene::find_real_arm_file(arm, anew);
+  scene::RealArmSearch fresh = vintage;
+  fresh.for_calibration = true;
+  const auto calibrated = scene::find_real_arm_file(arm, fresh);
   ASSERT_TRUE(calibrated);
   EXPECT_EQ(calibrated->path.stem(), "vintage_phantom");
   EXPECT_EQ(calibrated->why, "named by --arm");

@@ -153,10 +153,10 @@ TEST_F(LogTest, UnwritableFileIsReportedOnce) {
     logger().warn("one");
     logger().warn("two");
   });
-  const std::size_t told =
+  const std::size_t reported =
       said.find("thimble: Logging has stopped, because " + default_log_file().string());
-  ASSERT_NE(told, std::string::npos) << said;
-  EXPECT_EQ(said.find("Logging has stopped", told + 20), std::string::npos) << said;
+  ASSERT_NE(reported, std::string::npos) << said;
+  EXPECT_EQ(said.find("Logging has stopped", reported + 20), std::string::npos) << said;
   EXPECT_NE(said.find("thimble: one\n"), std::string::npos);
   EXPECT_NE(said.find("thimble: two\n"), std::string::npos);
 }

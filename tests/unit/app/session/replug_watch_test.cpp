@@ -117,7 +117,7 @@ class ReplugWatchTest : public ::testing::Test {
   }
 
   double force() const { return Eigen::Map<const Eigen::Vector3d>(last_.f_sent_W.data()).norm(); }
-  bool told(const std::string& words) const {
+  bool reported(const std::string& words) const {
     for (const std::string& line : told_) {
       if (line.find(words) != std::string::npos) return true;
     }
@@ -140,17 +140,17 @@ TEST_F(ReplugWatchTest, EnablesForcesOnlyAtTheHomePose) {
   EXPECT_GT(force(), 0.4);
   first_.lost = true;
   pass(2);
-  EXPECT_TRUE(told("Force is off (transport_lost)"));
+  EXPECT_TRUE(reported("Force is off (transport_lost)"));
   EXPECT_EQ(force(), 0);
   second_.counts = {1500, 0, 0, 0, 0, 0};  // connected away from its home pose, then moved there
   plugged_ = true;
   pass(12);
   EXPECT_EQ(opened_, 1);
-  EXPECT_TRUE(told("Move it to its home pose and press Enter"));
-  EXPECT_FALSE(told("as before"));
+  EXPECT_TRUE(reported("Move it to its home pose and press Enter"));
+  EXPECT_FALSE(reported("as before"));
   enter_ = true;
   pass(3);
-  EXPECT_TRUE(told("mm away from its home pose"));
+  EXPECT_TRUE(reported("mm away from its home pose"));
   EXPECT_EQ(force(), 0) << "its counters say that it is not at home";
   EXPECT_EQ(last_.fault, Fault::kTransportLost);
   second_.counts = {50, 0, 0, 0, 0, 0};
@@ -169,7 +169,7 @@ TEST_F(ReplugWatchTest, SelfHomingArmNeedsOnlyTheWorkspace) {
   plugged_ = true;
   second_.counts = {1500, 0, 0, 0, 0, 0};
   pass(12);
-  EXPECT_TRUE(told("has found its zero"));
+  EXPECT_TRUE(reported("has found its zero"));
   enter_ = true;
   pass(6);
   EXPECT_GT(force(), 0.4);
@@ -182,7 +182,7 @@ TEST_F(ReplugWatchTest, ChecksTheWorkspaceAfterAnyFault) {
   pass(6);
   enter_ = true;
   pass(3);
-  EXPECT_TRUE(told("outside of the workspace"));
+  EXPECT_TRUE(reported("outside of the workspace"));
   EXPECT_EQ(force(), 0);
   first_.carried_to = 1500;  // inside, and not at home: its counters did not restart
   pass(6);
@@ -195,10 +195,10 @@ TEST_F(ReplugWatchTest, FindsAnArmDisconnectedAfterAnotherFault) {
   pass(5);
   device_->trip(Fault::kOverSpeed);
   pass(2);
-  EXPECT_TRUE(told("Force is off (over_speed)"));
+  EXPECT_TRUE(reported("Force is off (over_speed)"));
   first_.lost = true;
   pass(2);
-  EXPECT_TRUE(told("The arm was disconnected."));
+  EXPECT_TRUE(reported("The arm was disconnected."));
   enter_ = true;
   pass(1);
   EXPECT_EQ(force(), 0);
@@ -207,7 +207,7 @@ TEST_F(ReplugWatchTest, FindsAnArmDisconnectedAfterAnotherFault) {
   EXPECT_EQ(opened_, 1);
   EXPECT_EQ(last_.fault, Fault::kOverSpeed);
   EXPECT_EQ(last_.link, driver::LinkState::kConnected);
-  EXPECT_TRUE(told("Move it to its home pose and press Enter"));
+  EXPECT_TRUE(reported("Move it to its home pose and press Enter"));
   EXPECT_EQ(force(), 0) << "Enter was not pressed";
   enter_ = true;
   pass(6);
@@ -218,10 +218,10 @@ TEST_F(ReplugWatchTest, FindsAnArmWhoseLossTheKernelReportsLate) {
   pass(5);
   first_.silent = true;
   pass(1);
-  EXPECT_TRUE(told("Force is off (no_reports)"));
+  EXPECT_TRUE(reported("Force is off (no_reports)"));
   enter_ = true;
   pass(1);
-  EXPECT_TRUE(told("The arm is silent"));
+  EXPECT_TRUE(reported("The arm is silent"));
   first_.lost = true;
   plugged_ = true;
   pass(12);
@@ -241,12 +241,12 @@ TEST_F(ReplugWatchTest, BoardRestartRequiresTheHomePose) {
   first_.counts = {0, 0, 0, 0, 0, 0};  // in its pose, 42 mm away from its home pose
   first_.silent = false;
   pass(1);
-  EXPECT_TRUE(told("Move it to its home pose and press Enter"));
+  EXPECT_TRUE(reported("Move it to its home pose and press Enter"));
   first_.counts = {1500, 800, 0, 0, 0, 0};  // the user moves it
   pass(2);
   enter_ = true;
   pass(6);
-  EXPECT_TRUE(told("mm away from its home pose"));
+  EXPECT_TRUE(reported("mm away from its home pose"));
   EXPECT_EQ(force(), 0) << "its tip and its Jacobian are wrong";
   first_.counts = {};  // moved to its home pose and switched on there
   pass(2);
@@ -264,7 +264,7 @@ TEST_F(ReplugWatchTest, FindsAnArmDisconnectedTwice) {
   second_.lost = true;
   plugged_ = false;
   pass(15);
-  EXPECT_TRUE(told("disconnected again"));
+  EXPECT_TRUE(reported("disconnected again"));
   enter_ = true;
   pass(3);
   EXPECT_EQ(force(), 0);

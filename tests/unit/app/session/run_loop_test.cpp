@@ -115,9 +115,9 @@ TEST_F(RunLoopTest, DoesNotCallObserversAfterItsEnd) {
   stop_.store(true);
   EXPECT_EQ(loop.tick(stop_), driver::ServoEnd::kStopped);
   const int messages = messages_;
-  const std::size_t told = records_.size();
+  const std::size_t reported = records_.size();
   EXPECT_EQ(loop.tick(stop_), driver::ServoEnd::kStopped);
-  EXPECT_EQ(records_.size(), told);
+  EXPECT_EQ(records_.size(), reported);
   EXPECT_EQ(messages_, messages);
 }
 

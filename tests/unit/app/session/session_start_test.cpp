@@ -129,19 +129,19 @@ TEST_F(SessionStart, ReportsObjectsInWhichARealTipStarts) {
 TEST_F(SessionStart, AsksBeforeARealArmGetsForces) {
   auto prepared = session::Session::prepare(scene(), options_);
   ASSERT_TRUE(prepared) << prepared.error().message;
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   std::atomic<bool> stop{false};
   session::EnterKey answer = session::EnterKey::kPressed;
   int looks = 0;
   session::Terminal terminal{
       .there = true,
       .key = [&] { return ++looks % 3 == 0 ? answer : session::EnterKey::kNothing; },
-      .print_line = [&](const std::string& line) { told.push_back(line); },
-      .ask = [&](const std::string& line) { told.push_back(line); }};
+      .print_line = [&](const std::string& line) { reported.push_back(line); },
+      .ask = [&](const std::string& line) { reported.push_back(line); }};
   EXPECT_TRUE(session::agree_to_forces(**prepared, false, terminal, stop));
-  ASSERT_EQ(told.size(), 2u);
-  EXPECT_NE(told[0].find("S1 is about to apply forces."), std::string::npos) << told[0];
-  EXPECT_NE(told[0].find("in the home pose"), std::string::npos) << told[0];
+  ASSERT_EQ(reported.size(), 2u);
+  EXPECT_NE(reported[0].find("S1 is about to apply forces."), std::string::npos) << reported[0];
+  EXPECT_NE(reported[0].find("in the home pose"), std::string::npos) << reported[0];
   EXPECT_EQ(looks, 3) << "it waits for the answer";
   answer = session::EnterKey::kClosed;
   EXPECT_FALSE(session::agree_to_forces(**prepared, false, terminal, stop));
@@ -152,7 +152,7 @@ TEST_F(SessionStart, AsksBeforeARealArmGetsForces) {
   EXPECT_TRUE(session::agree_to_forces(**prepared, true, terminal, stop)) << "--yes";
   terminal.there = false;
   EXPECT_FALSE(session::agree_to_forces(**prepared, false, terminal, stop));
-  EXPECT_NE(told.back().find("--yes"), std::string::npos);
+  EXPECT_NE(reported.back().find("--yes"), std::string::npos);
   EXPECT_EQ(looks, 0) << "no question is printed";
   EXPECT_EQ(opened_, 0);
 }

@@ -355,13 +355,13 @@ TEST(Share, ShowsPermanentlySplitTriangles) {
   pair.run->store_vertex(4, {4, 5, 6});
   pair.run->store_split(1, {.vertex = 4, .ends = {2, 3}, .triangles = {0, 2}, .others = {4, 5}});
   pair.run->store_split(2, {});  // there is none
-  render::TriangleMesh anew = first;
+  render::TriangleMesh fresh = first;
   pair.reader->shape(1, mesh);
-  pair.reader->shape(1, anew);
+  pair.reader->shape(1, fresh);
   const Triangles twice{{0, 4, 2}, {3, 0, 2}, {4, 1, 2}, {1, 3, 2}, {0, 3, 4}, {3, 1, 4}};
   EXPECT_EQ(mesh.triangles, twice);
-  EXPECT_EQ(anew.triangles, twice);
-  EXPECT_EQ(anew.vertices, mesh.vertices);
+  EXPECT_EQ(fresh.triangles, twice);
+  EXPECT_EQ(fresh.vertices, mesh.vertices);
   EXPECT_EQ(mesh.vertices[4], Eigen::Vector3d(4, 5, 6));
   EXPECT_EQ(pair.reader->rejected(), 0U);
 }

@@ -51,14 +51,14 @@ std::vector<std::uint32_t> from_to(std::uint32_t begin, std::uint32_t end) {
 
 TEST_F(LiveFeedTest, EveryTickReachesAPageOnceUnchanged) {
   LiveFeed::Place place;
-  std::string told;
+  std::string reported;
   for (const std::size_t count : {1U, 33U, 0U, 40U, 1U}) {
     run_ticks(count);
     feed_->step();
-    told += all(place);
+    reported += all(place);
   }
-  EXPECT_EQ(ticks_of(told), from_to(0, 75));
-  for (const LiveUpdate& update : updates_of(told)) {
+  EXPECT_EQ(ticks_of(reported), from_to(0, 75));
+  for (const LiveUpdate& update : updates_of(reported)) {
     const auto ticks = update.array<std::uint32_t>("arm0.tick");
     const auto times = update.array<double>("arm0.t");
     const auto sent = update.array<float>("arm0.sent");
@@ -90,7 +90,7 @@ TEST_F(LiveFeedTest, SlowPageLearnsHowManyTicksItMissed) {
   LiveFeed::Place slow;
   run_ticks(500);
   feed_->step();
-  std::string told = all(slow);
+  std::string reported = all(slow);
   for (int update = 0; update < 70; ++update) {
     run_ticks(1000);
     feed_->step();
@@ -102,8 +102,8 @@ TEST_F(LiveFeedTest, SlowPageLearnsHowManyTicksItMissed) {
   std::uint64_t lost = 0;
   for (const LiveUpdate& update : updates_of(rest)) lost += update.json.value("lost_here", 0U);
   EXPECT_EQ(lost, 10'000U);
-  told += rest;
-  EXPECT_EQ(ticks_of(told).size() + lost, 70'500U);
+  reported += rest;
+  EXPECT_EQ(ticks_of(reported).size() + lost, 70'500U);
   EXPECT_EQ(ticks_of(rest), from_to(10'500, 70'500));
 }
 

@@ -214,8 +214,8 @@ TEST(RiseLimit, TakesAtLeastTheWantedEnergy) {
     const double square = last.squaredNorm();
     const Vector3d near = std::clamp(wanted.dot(last) / square, 0.0, 1.0) * last;
     const Vector3d step = wanted - near;
-    const Vector3d anew = step.norm() > 2 ? Vector3d(near + 2 / step.norm() * step) : wanted;
-    ASSERT_LE(sent.dot(v), anew.dot(v) + 1e-12);
+    const Vector3d fresh = step.norm() > 2 ? Vector3d(near + 2 / step.norm() * step) : wanted;
+    ASSERT_LE(sent.dot(v), fresh.dot(v) + 1e-12);
   }
   EXPECT_GT(held, 10'000);
   EXPECT_GT(dropped, 1000);

@@ -51,28 +51,28 @@ TEST(SplitEdge, EqualsANewlyBuiltMesh) {
         same.triangles.push_back(mesh.corners(t));
       }
       EXPECT_TRUE(check_mesh(same).touchable());
-      const ContactMesh anew = ContactMesh::build(same).value();
-      ASSERT_EQ(anew.triangle_count(), mesh.triangle_count());
-      const SmoothNormals normals(anew, kCreaseAngle, weights);
+      const ContactMesh fresh = ContactMesh::build(same).value();
+      ASSERT_EQ(fresh.triangle_count(), mesh.triangle_count());
+      const SmoothNormals normals(fresh, kCreaseAngle, weights);
       for (std::int32_t t = 0; t < mesh.triangle_count(); ++t) {
-        ASSERT_EQ(mesh.corners(t), anew.corners(t));
-        ASSERT_EQ(mesh.cell(t).neighbours, anew.cell(t).neighbours);
-        ASSERT_EQ(mesh.cell(t).face.n, anew.cell(t).face.n);
+        ASSERT_EQ(mesh.corners(t), fresh.corners(t));
+        ASSERT_EQ(mesh.cell(t).neighbours, fresh.cell(t).neighbours);
+        ASSERT_EQ(mesh.cell(t).face.n, fresh.cell(t).face.n);
         ASSERT_EQ(grown.normals()->corners(t), normals.corners(t));
         for (std::size_t k = 0; k < 3; ++k) {
-          ASSERT_EQ(mesh.edge_planes(t)[k].n, anew.edge_planes(t)[k].n);
+          ASSERT_EQ(mesh.edge_planes(t)[k].n, fresh.edge_planes(t)[k].n);
           ASSERT_EQ(grown.normals()->crease(t, k), normals.crease(t, k));
         }
       }
       for (std::int32_t v = 0; v < mesh.vertex_count(); ++v) {
         const auto fan = mesh.fan(v);
-        const auto wanted = anew.fan(v);
+        const auto wanted = fresh.fan(v);
         ASSERT_TRUE(std::equal(fan.begin(), fan.end(), wanted.begin(), wanted.end())) << v;
       }
       std::vector<std::int32_t> all(same.triangles.size());
       for (std::size_t t = 0; t < all.size(); ++t) all[t] = static_cast<std::int32_t>(t);
       linear.refit(all);
-      const TreeSearch<ContactMesh> tree(anew);
+      const TreeSearch<ContactMesh> tree(fresh);
       for (int i = 0; i < 300; ++i) {
         const Vector3d from = random.in_box(0.08), to = random.in_box(0.08);
         const Entry wanted = tree.first_entry(from, to);

@@ -50,8 +50,8 @@ TEST(FillHoles, ClosesABoxWithoutLidByAFlatOne) {
   EXPECT_TRUE(found.touchable());
   EXPECT_EQ(found.triangles, 12u);
   EXPECT_DOUBLE_EQ(found.volume, 48);
-  const std::string told = describe(repaired.changes.back());
-  EXPECT_NE(told.find("1 hole was filled (4 edges"), std::string::npos) << told;
+  const std::string reported = describe(repaired.changes.back());
+  EXPECT_NE(reported.find("1 hole was filled (4 edges"), std::string::npos) << reported;
 }
 
 TEST(FillHoles, ClosesAHoleInACurvedSurfaceWithoutASpikeOrADent) {

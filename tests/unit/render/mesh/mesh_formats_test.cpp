@@ -202,10 +202,10 @@ TEST(MeshFormats, EndlessReadersAreAborted) {
   bytes.replace(corners + 3, 1, "x");
   const auto mesh = load_bytes("endless.dae", bytes);
   ASSERT_FALSE(mesh.ok());
-  const std::string& told = mesh.error().message;
-  EXPECT_TRUE(told.find("needs more memory than its size allows") != std::string::npos ||
-              told.find("takes more than 2 s") != std::string::npos)
-      << told;
+  const std::string& reported = mesh.error().message;
+  EXPECT_TRUE(reported.find("needs more memory than its size allows") != std::string::npos ||
+              reported.find("takes more than 2 s") != std::string::npos)
+      << reported;
 }
 
 }  // namespace

@@ -119,14 +119,14 @@ TEST(TreeNodes, ContainEveryItemOnceWithinTheirBoxes) {
       fill(boxes[place]);
       nodes.refit(place, box_of);
     }
-    TreeNodes anew;
-    anew.build(things, box_of);
-    ASSERT_EQ(nodes.levels(), anew.levels());
+    TreeNodes fresh;
+    fresh.build(things, box_of);
+    ASSERT_EQ(nodes.levels(), fresh.levels());
     std::size_t width = things;
     for (std::size_t level = 0; level < nodes.levels(); ++level) {
       width = (width + 7) / 8;
       for (std::size_t i = 0; i < width; ++i) {
-        ASSERT_TRUE(nodes.row(level)[i] == anew.row(level)[i]);
+        ASSERT_TRUE(nodes.row(level)[i] == fresh.row(level)[i]);
       }
     }
     EXPECT_EQ(width, 1u);

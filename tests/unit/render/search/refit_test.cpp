@@ -60,7 +60,7 @@ std::vector<VertexMove> next_moves(const ContactMesh& mesh, const TriangleMesh& 
                        random);
 }
 
-void expect_same_answers(const ContactSearch& moved, const ContactSearch& anew,
+void expect_same_answers(const ContactSearch& moved, const ContactSearch& fresh,
                          const ContactMesh& mesh, const std::vector<VertexMove>& moves,
                          support::Random& random, int& entries) {
   for (int i = 0; i < 40; ++i) {
@@ -68,13 +68,13 @@ void expect_same_answers(const ContactSearch& moved, const ContactSearch& anew,
     const double reach = i % 3 == 0 ? kSize : i % 3 == 1 ? 0.004 : 0.0003;
     const Vector3d from = mesh.position(v) + random.in_box(reach);
     const Vector3d to = from + random.in_box(reach);
-    const Entry wanted = anew.first_entry(from, to);
+    const Entry wanted = fresh.first_entry(from, to);
     const Entry found = moved.first_entry(from, to);
     ASSERT_EQ(found.triangle, wanted.triangle);
     ASSERT_EQ(found.parameter, wanted.parameter);  // bit-identical
     entries += wanted.triangle >= 0;
-    ASSERT_EQ(moved.inside(from), anew.inside(from));
-    const SurfacePoint near = anew.closest(from, 0.01);
+    ASSERT_EQ(moved.inside(from), fresh.inside(from));
+    const SurfacePoint near = fresh.closest(from, 0.01);
     const SurfacePoint nearest = moved.closest(from, 0.01);
     ASSERT_EQ(nearest.triangle >= 0, near.triangle >= 0);
     // Among triangles that share the closest point, the order of the queries decides, and the last
@@ -97,8 +97,8 @@ TEST(MovingMesh, IsSearchedLikeANewMesh) {
         const auto moves = next_moves(surface.mesh(), shape, round, random);
         const SurfaceMoved moved = surface.move_vertices(moves, Vector3d::Zero());
         ASSERT_EQ(moved.refused, 0);
-        const auto anew = make_search(surface.mesh(), choice);
-        expect_same_answers(surface.search(), *anew, surface.mesh(), moves, random, entries);
+        const auto fresh = make_search(surface.mesh(), choice);
+        expect_same_answers(surface.search(), *fresh, surface.mesh(), moves, random, entries);
         if (HasFatalFailure()) return;
       }
       EXPECT_GT(entries, rounds());
@@ -120,7 +120,7 @@ TEST(MovingMesh, HasThePlanesAndNormalsOfANewMesh) {
       for (int round = 0; round < rounds() / 4; ++round) {
         const SmoothNormals before = *surface.normals();
         surface.move_vertices(next_moves(surface.mesh(), shape, round, random), Vector3d::Zero());
-        const SmoothNormals anew(surface.mesh(), kCrease, weights);
+        const SmoothNormals fresh(surface.mesh(), kCrease, weights);
         ContactMesh planes = surface.mesh();
         for (std::int32_t v = 0; v < planes.vertex_count(); ++v) {
           planes.move_vertex(v, planes.position(v));
@@ -130,9 +130,9 @@ TEST(MovingMesh, HasThePlanesAndNormalsOfANewMesh) {
           for (std::size_t k = 0; k < 3; ++k) {
             ASSERT_EQ(surface.mesh().edge_planes(t)[k].n, planes.edge_planes(t)[k].n);
             ASSERT_EQ(surface.mesh().edge_planes(t)[k].d, planes.edge_planes(t)[k].d);
-            ASSERT_EQ(surface.normals()->corners(t)[k], anew.corners(t)[k]) << t;  // bit-identical
-            ASSERT_EQ(surface.normals()->crease(t, k), anew.crease(t, k)) << t;
-            changed += before.crease(t, k) != anew.crease(t, k);
+            ASSERT_EQ(surface.normals()->corners(t)[k], fresh.corners(t)[k]) << t;  // bit-identical
+            ASSERT_EQ(surface.normals()->crease(t, k), fresh.crease(t, k)) << t;
+            changed += before.crease(t, k) != fresh.crease(t, k);
           }
         }
       }

@@ -38,12 +38,12 @@ TEST(MovingMesh, HasThePlanesOfANewMesh) {
     shape.vertices[v] = p;
     moved.move_vertex(static_cast<std::int32_t>(v), p);
   }
-  const ContactMesh anew = ContactMesh::build(shape).value();
-  ASSERT_EQ(anew.origin(), moved.origin());
-  for (std::int32_t t = 0; t < anew.triangle_count(); ++t) {
-    expect_equal(moved.cell(t).face, anew.cell(t).face);
+  const ContactMesh fresh = ContactMesh::build(shape).value();
+  ASSERT_EQ(fresh.origin(), moved.origin());
+  for (std::int32_t t = 0; t < fresh.triangle_count(); ++t) {
+    expect_equal(moved.cell(t).face, fresh.cell(t).face);
     for (std::size_t k = 0; k < 3; ++k)
-      expect_equal(moved.edge_planes(t)[k], anew.edge_planes(t)[k]);
+      expect_equal(moved.edge_planes(t)[k], fresh.edge_planes(t)[k]);
   }
 }
 
