@@ -23,7 +23,7 @@ expect_words 0 'softer.csv 2000 elephant' "$thimble" export softer.h5 --csv soft
 # The requested force differs in some ticks.
 wanted() { awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^f_wanted_W/) at[++n] = i; next } { print $at[1], $at[2], $at[3] }' "$1"; }
 expect 0 '^[1-9]' bash -c "$(declare -f wanted); diff <(wanted run.csv) <(wanted softer.csv) | wc -l"
-expect_error 2 'softer.yaml has changed' "$thimble" replay run.h5 --scene softer.yaml --verify
+expect_error 2 'softer.yaml' "$thimble" replay run.h5 --scene softer.yaml --verify
 
 # A trajectory from another program touches a scene, and its forces are compared.
 printf 't x y z fx fy fz\n0 0 0 20 0 0 0\n1 0 0 5 0 0 1\n2 10 0 5 0 0 1\n' >probe.traj

@@ -88,7 +88,7 @@ for end in view signal; do
   expect 1 '' test -e "$segment"
 done
 
-expect_words 0 'No display' "$thimble" run "$scenes/honey.yaml" --view --duration 0.2 --name "$me"
+expect_words 0 'display view' "$thimble" run "$scenes/honey.yaml" --view --duration 0.2 --name "$me"
 
 # Steered: by speed, single ticks, restart by request and by a changed file, and another scene.
 sed "s#\.\./arms#$source_dir/app/arms#; s/^duration:.*/duration: 60/" "$scenes/rubber.yaml" >ball.yaml

@@ -18,7 +18,7 @@ kill -INT $plug
 wait $plug || fail "plug ended with $?: $(cat plug.txt)"
 see '^Unplugged' cat plug.txt
 
-says guide/own_arm.md 'they try the simulated arm of `--arm`, print SIMULATED on the first and the last line, and save nothing'
+says guide/own_arm.md 'They then print SIMULATED on the first and the last line, and save nothing.'
 see '^encoder_sign' thimble calibrate --device sim --arm polhem
 see '^ok +watchdog' thimble feel-check --device sim --arm polhem
 
@@ -28,7 +28,7 @@ sed -i 's/^name: .*/name: my_arm/' my_arm.yaml
 says guide/own_arm.md 'thimble run app/scenes/elephant.yaml --arm app/arms/woodenhaptics.yaml --duration 2'
 see 'the simulated arm my_arm' thimble run rubber --arm my_arm.yaml --duration 2
 # A reversed motor is found before it pushes a user.
-says guide/own_arm.md '`feel-check` names a wire that is dead'
+says guide/own_arm.md 'It reports a wire that is dead, reversed or swapped'
 sed 's/^simulation:/&\n  wiring: {motor_gain: [1, -1, 1]}/' my_arm.yaml >reversed.yaml
 thimble feel-check --device sim --arm reversed.yaml >check.txt 2>&1 </dev/null && fail "reversed: $(cat check.txt)"
 see 'Motor 2 pulls backwards' cat check.txt

@@ -8,24 +8,24 @@ says guide/index.md 'The summary lists contacts, forces and how regular the loop
 scene=water_balloon  # needs no scan
 [ -z "${THIMBLE_LONG:-}" ] || scene=elephant
 see '^Force +[0-9.]+ N maximum' thimble run $scene --report out
-says guide/index.md '`out/` holds pictures, `report.json`, and `index.html`'
+says guide/index.md 'The folder `out/` holds pictures, `report.json` and `index.html`'
 see '"force_N"' cat out/report.json
 ! has gnuplot || see PNG head -c 4 out/path_on_mesh.png
 
-says guide/scenes.md 'so a copy of a scene that came with Thimble runs wherever you put it'
-says guide/index.md 'This lists all scenes and arms that have a name'
+says guide/scenes.md 'So a copy of a scene that came with Thimble runs wherever you put it'
+says guide/index.md 'thimble run --list'
 came=$(thimble run --list | awk '$1 == "tin_can" { print $2 }')
 cp "$came" my_can.yaml
 sed -i 's/^name: .*/name: my_can/; s/stiffness: 600 /stiffness: 400 /' my_can.yaml
 see 'bit-identical in every run' thimble run my_can.yaml --record can.h5
-says guide/scenes.md 'An error message names the file, the line, the expected value and the value found.'
+says guide/scenes.md 'If the file has an error, the message names the file, the line, the'
 sed 's/stiffness: 400 /stifness: 400 /' my_can.yaml >wrong.yaml
 refused 'wrong\.yaml:[0-9]+: .*stifness' thimble run wrong.yaml
 says guide/scenes.md 'thimble run my_ball.yaml'
 awk '/^```yaml$/ { inside = 1; next } /^```/ { if (inside) exit } inside' "$DOCUMENTS/guide/scenes.md" >my_ball.yaml
 see ': [1-9][0-9]* contacts?,' thimble run my_ball.yaml
 
-says guide/recording.md 'A line per tick, in SI units, with a header that names columns and units.'
+says guide/recording.md 'The table has one line per tick, in SI units. Its header names columns and units.'
 see '9000 ticks of my_can' thimble export can.h5 --csv can.csv
 if has gnuplot; then
   gnuplot -e "set terminal png; set output 'mine.png'; set datafile separator ','; set xlabel 'time [s]';

@@ -14,7 +14,7 @@ see '' thimble view class_$$ --stop
 wait $run || fail "the run ended with $?: $(cat run.txt)"
 see 'stopped early' cat run.txt
 
-says guide/recording.md 'It is one file and loads nothing, so it can be mailed or put on a web server as it is.'
+says guide/recording.md 'It is one file and loads no other. You can mail it or put it on a web server.'
 says guide/recording.md 'thimble replay tin_can.h5 --page can.html'
 thimble run clay --duration 3 --record class.h5 >said 2>&1 || fail "$(cat said)"
 thimble replay class.h5 --page class.html >said 2>&1 || grep -q 'libjs-three' said || fail "$(cat said)"
@@ -31,7 +31,7 @@ if ! thimble shot clay --at 2 --size 160x120 --out clay.png >said 2>&1; then
   exit 0
 fi
 see PNG head -c 4 clay.png
-says guide/recording.md 'an animation of a moment'
+says guide/recording.md 'this command makes an animation'
 animate() { thimble shot clay --at 2 --until 2.5 --pace 8 --size 160x120 --animate "$1"; }
 see 'Animation: clay_film\.png \(animated PNG, 4 pictures' animate clay_film.png
 if has ffmpeg; then

@@ -150,7 +150,7 @@ TEST(IdentifiedTwin, BadFitIsInEveryMark) {
   }
   EXPECT_GE(marks, 6);
   EXPECT_TRUE(support::refuses(
-      write_identified(kArm, file, found, {.date = "2026-11-25", .arm = "A 1"}), "there already"));
+      write_identified(kArm, file, found, {.date = "2026-11-25", .arm = "A 1"}), "already exists"));
 }
 
 TEST(IdentifyForce, StaysBelowTheUsersLimit) {

@@ -100,8 +100,7 @@ void hdDisableDevice(unsigned device) {
   expect(scheduler().tasks.empty(), "hdDisableDevice with a callback scheduled");
   expect(device == kDevice && mock().open, "hdDisableDevice of a closed device");
   expect(!mock().scheduler, "hdDisableDevice while the scheduler runs");
-  expect(mock().taken.empty() || mock().taken.back().isZero(0),
-         "hdDisableDevice during a force");
+  expect(mock().taken.empty() || mock().taken.back().isZero(0), "hdDisableDevice during a force");
   mock().open = mock().force_on = mock().asked_calibration = false;
   ++mock().closed;
 }

@@ -76,12 +76,7 @@ std::string flaw_of_list(const YAML::Node& schema, const YAML::Node& value) {
   if (schema["minItems"] && value.size() < schema["minItems"].as<std::size_t>()) return "too short";
   if (schema["maxItems"] && value.size() > schema["maxItems"].as<std::size_t>()) return "too long";
   for (std::size_t i = 0; i < value.size(); ++i) {
-    YAML::Node item = schema["prefixItems"];
-    if (item) {
-      item.reset(item[i]);
-    } else {
-      item.reset(schema["items"]);
-    }
+    const YAML::Node item = schema["prefixItems"] ? schema["prefixItems"][i] : schema["items"];
     if (!item) continue;
     const std::string flaw = flaw_of(item, value[i]);
     if (!flaw.empty()) return flaw;
