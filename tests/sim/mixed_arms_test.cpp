@@ -282,7 +282,7 @@ TEST_F(MixedArms, NamesMustBeThoseOfTheScene) {
       << unknown.error().message;
   const auto one = session::Session::prepare(kSource / "app/scenes/box.yaml", options_);
   ASSERT_FALSE(one);
-  EXPECT_NE(one.error().message.find("the scene has one arm; name it without middle=: --device"),
+  EXPECT_NE(one.error().message.find("the scene has one arm; remove middle= from --device"),
             std::string::npos)
       << one.error().message;
 }

@@ -335,7 +335,7 @@ TEST(Identify, EndsWithZeroForceWhenItIsStopped) {
   auto bench = simulated_bench(arm.file, 0);
   ASSERT_TRUE(bench.ok());
   const std::atomic<bool> stopped{true};
-  EXPECT_TRUE(support::refuses(record_motion(**bench, arm.file, {}, stopped), "stopped"));
+  EXPECT_TRUE(support::refuses(record_motion(**bench, arm.file, {}, stopped), "Stopped"));
   EXPECT_TRUE((*bench)->device().zero_assured());
   EXPECT_EQ((*bench)->true_force_max(), 0);
 }

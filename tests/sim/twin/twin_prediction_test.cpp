@@ -282,7 +282,7 @@ TEST(DropTrial, FailsIfNothingFallsOrBounces) {
   EXPECT_TRUE(support::refuses(stability::drop_on_wall(arm, trial), "does not leave the wall"));
   trial = {};
   trial.height = 0.5;
-  EXPECT_TRUE(support::refuses(stability::drop_on_wall(arm, trial), "out of the arm's reach"));
+  EXPECT_TRUE(support::refuses(stability::drop_on_wall(arm, trial), "outside the arm's workspace"));
   EXPECT_TRUE(
       support::refuses(stability::drop_on_wall(scene::load_arm("falcon").value(), {}), "board"));
 }

@@ -255,9 +255,9 @@ TEST(Twin, RefusesUnsuitableRecordings) {
       [](auto& other) {
         for (auto& tick : other.ticks) tick.f_sent_W = {};
       },
-      arm.file, "no force"));
-  EXPECT_TRUE(refused([](auto& other) { other.ticks.resize(1500); }, arm.file, "too short"));
-  EXPECT_TRUE(refused([](auto& other) { other.ticks.clear(); }, arm.file, "too short"));
+      arm.file, "no significant force"));
+  EXPECT_TRUE(refused([](auto& other) { other.ticks.resize(1500); }, arm.file, "less than 2 s"));
+  EXPECT_TRUE(refused([](auto& other) { other.ticks.clear(); }, arm.file, "less than 2 s"));
   EXPECT_TRUE(refused(
       [](auto& other) {
         for (auto& tick : other.ticks) tick.stage = driver::DeviceStage::kIdle;
