@@ -262,14 +262,14 @@ TEST(Twin, RefusesUnsuitableRecordings) {
       [](auto& other) {
         for (auto& tick : other.ticks) tick.stage = driver::DeviceStage::kIdle;
       },
-      arm.file, "too short"));
+      arm.file, "less than 2 s"));
   EXPECT_TRUE(refused([](auto& other) { other.info.rate = 2000; }, arm.file, "damaged"));
   EXPECT_TRUE(refused([](auto& other) { other.info.arm_text = "name: ["; }, arm.file, "damaged"));
   EXPECT_TRUE(refused(
       [](auto& other) {
         for (auto& tick : other.ticks) tick.q = {NAN, NAN, NAN};
       },
-      arm.file, "too short"));
+      arm.file, "less than 2 s"));
   EXPECT_TRUE(
       support::refuses(compare_twin(recording, arm.file, {.window = 6, .span = {}}), "No part"));
   scene::ArmFile weightless = arm.file;

@@ -48,14 +48,19 @@ struct GateLimits {
   /// Largest speed limit, m/s [chosen: twice what a hand reaches in a throw M].
   static constexpr double kSpeedMax = 20;
 
-  /// Former names of the six limits above.
+  /// Former name of kSoftStartMin.
   [[deprecated("renamed to kSoftStartMin")]] static constexpr double kSoftStartLeast =
       kSoftStartMin;
+  /// Former name of kRiseMax.
   [[deprecated("renamed to kRiseMax")]] static constexpr double kRiseMost = kRiseMax;
+  /// Former name of kRiseTimeMin.
   [[deprecated("renamed to kRiseTimeMin")]] static constexpr double kRiseTimeLeast = kRiseTimeMin;
+  /// Former name of kWatchdogMax_ns.
   [[deprecated("renamed to kWatchdogMax_ns")]] static constexpr std::int64_t kWatchdogMost_ns =
       kWatchdogMax_ns;
+  /// Former name of kForceMax.
   [[deprecated("renamed to kForceMax")]] static constexpr double kForceMost = kForceMax;
+  /// Former name of kSpeedMax.
   [[deprecated("renamed to kSpeedMax")]] static constexpr double kSpeedMost = kSpeedMax;
 
   double force_max = 0;  ///< Largest force, N. Must be finite and > 0.
