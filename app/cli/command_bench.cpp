@@ -61,8 +61,7 @@ int run_bench(const BenchOptions& options) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("bench", "Measure the rates that the servo loop keeps on this machine");
+  CLI::App* command = app.add_subcommand("bench", "Measure loop rates on this machine");
   auto options = std::make_shared<BenchOptions>();
   add_scene_option(*command, options->scene)->capture_default_str();
   command->add_option("--rate", options->rates, "Rates to try, Hz")

@@ -40,7 +40,7 @@ if grep -v '^thimble/' included >&2; then
   exit 1
 fi
 grep -qx 'thimble/session/session.h' included || { echo "FAILED: no page says #include <thimble/session/session.h>" >&2; exit 1; }
-grep -q 'what the force law asked for' whole/structthimble_1_1driver_1_1TickRecord.html || { echo "FAILED: an empty page" >&2; exit 1; }
+grep -q 'Force requested by the force law' whole/structthimble_1_1driver_1_1TickRecord.html || { echo "FAILED: an empty page" >&2; exit 1; }
 
 cat >wordless.h <<'EOF'
 #pragma once

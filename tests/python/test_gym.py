@@ -134,7 +134,7 @@ def test_unreachable_target_keeps_the_hand_and_clears_reached():
 
 
 @pytest.mark.parametrize(
-    "wrong, said",
+    "wrong, message",
     [
         (lambda: SHORT(frame_skip=0), "frame_skip"),
         (lambda: thimble.gym.TouchEnv("no_such"), "Known by name"),

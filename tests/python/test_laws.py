@@ -163,7 +163,7 @@ def test_wrong_shapes_are_refused_and_step_no_arm():
         (lambda: arms.step("hard"), "force: expected"),
         (lambda: thimble.Simulators(0), "count: expected a whole number from 1"),
         (lambda: thimble.Simulators(2, seed=[1, 2, 3]), "seed: expected 2 seeds, found 3"),
-        (lambda: thimble.Simulators(2, "box"), "no arm file of that name"),
+        (lambda: thimble.Simulators(2, "box"), "no arm file with this name"),
     ]:
         with pytest.raises(thimble.ArgumentError, match=message):
             wrong()

@@ -23,7 +23,7 @@ def test_knows_scenes_and_arms_by_name(source):
 
 
 @pytest.mark.parametrize(
-    "wrong, said",
+    "wrong, message",
     [
         (lambda: thimble.run("elefant"), "Known by name: .*elephant"),
         (lambda: thimble.run("./no_such.yaml"), "no_such"),
@@ -33,7 +33,7 @@ def test_knows_scenes_and_arms_by_name(source):
         (lambda: thimble.run("box", quality="best"), "draft, normal, reference or auto"),
         (lambda: thimble.run("box", record="/no/such/folder/a.h5"), "/no/such/folder"),
         (lambda: thimble.read_recording("no_such.h5"), "no such file"),
-        (lambda: thimble.Simulator("box"), "no arm file of that name"),
+        (lambda: thimble.Simulator("box"), "no arm file with this name"),
         (lambda: thimble.Simulator(hand=(1, 1, 1)), "does not reach"),
         (lambda: thimble.Simulator(rate=0), "rate: expected"),
         (lambda: thimble.Stepper("box").mesh("no_such_object"), "no object"),
@@ -69,7 +69,7 @@ def test_wrong_types_are_refused_before_the_run():
 
 
 @pytest.mark.parametrize(
-    "wrong, said",
+    "wrong, message",
     [
         (lambda: thimble.run("nope"), "Known by name: .*elephant"),
         (lambda: thimble.run("./nope.yaml"), "nope.yaml"),
@@ -82,7 +82,7 @@ def test_wrong_types_are_refused_before_the_run():
         (lambda: thimble.Stepper("box").step(hand=(0, 0)), "hand: expected three numbers"),
         (lambda: thimble.Stepper("box").step(hand="left"), "hand: expected three numbers"),
         (lambda: thimble.Stepper("box").mesh("nope"), "no object"),
-        (lambda: thimble.Simulator("nope"), "no arm file of that name"),
+        (lambda: thimble.Simulator("nope"), "no arm file with this name"),
         (lambda: thimble.Simulator(rate=0), "rate: expected"),
         (lambda: thimble.Simulator().step(force=(1, 2)), "force: expected three numbers"),
         (lambda: thimble.open("box", "WH99", agree=True), "WH99"),
@@ -99,7 +99,7 @@ def test_unknown_names_and_values_out_of_bounds_are_refused(wrong, message):
 
 
 @pytest.mark.parametrize(
-    "wrong, said",
+    "wrong, message",
     [
         (lambda: thimble.run(3), "scene: expected a file, a name, a dict or YAML text, found 3"),
         (lambda: thimble.run("box", arm=3), "arm: expected a file or a name, found 3"),

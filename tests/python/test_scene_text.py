@@ -87,7 +87,7 @@ def test_recordings_of_dicts_and_texts_can_be_replayed(tmp_path, program):
 
 
 @pytest.mark.parametrize(
-    "wrong, said",
+    "wrong, message",
     [
         (lambda: thimble.run(BALL, set={"cube.stiffness": 1}), 'no "cube" there; .*of objects ball'),
         (lambda: thimble.run(BALL, set={"ball.stifness": 1}), r"a_ball-\w+\.yaml:\d+: .*stifness"),
