@@ -35,7 +35,7 @@ def main():
     check(abs(found["scrubbed"] - found["duration"] / 2) < 0.01 * found["duration"], f"scrubbed to {found['scrubbed']}")
     check(abs(found["window"][0] - found["duration"] / 4) < 1e-6, f"zoomed to {found['window']}")
     check(found["plotted"][0] > 100 and found["plotted"][1] == 0, f"plots with {found['plotted']} points")
-    check("Force, most" in found["words"], "no figures")
+    check("Force, maximum" in found["words"], "no figures")
     check(found["leaks"] == "held", "a request could leave the page")
     check(len(found["requests"]) == 1 and found["requests"][0].startswith("file:"), f"requested {found['requests']}")
     check(not found["said"], f"console messages: {found['said']}")
