@@ -51,7 +51,7 @@ expect 0 '^Wrong +message [0-9]+ .*JSON' run garbage
 expect 0 '^Wrong +set_cursor_position 1 ' run garbage
 expect 0 '^Wrong +device_id 1 ' run garbage
 expect_own 0 'huge: right' run huge
-expect 0 'off: .*not a number' run huge
+expect 0 'off: .*not finite' run huge
 expect_own 0 'doors: right' run doors
 # Bit-identical each time, and equal at both ends.
 printf '0 0 0 0\n1 0.01 0.012 0.01\n2 -0.01 0 0\n' >hand.txt
