@@ -103,7 +103,37 @@ struct Match {
   std::size_t wrong = 0, compared = 0, left_out = 0;
   double worst = 0;
   std::vector<std::uint64_t> message_of;  // number of each tick's message, 0 if it is missing
+  std::vector<bool> certain;              // whether no other number is possible
 };
+
+/// Marks the ticks whose message is certainly that of `message_of`. Without refused messages all
+/// are. Otherwise a tick in free motion, whose message equals those of its neighbours, may belong
+/// to a neighbouring message: it is certain only between two ticks whose messages are unlike all
+/// nearby ones, and if no message was left out between these two.
+void mark_certain(const std::vector<Numbers>& wanted, std::size_t refused, Match& match) {
+  const std::size_t count = wanted.size();
+  match.certain.assign(count, refused == 0);
+  if (refused == 0) return;
+  const auto unlike_nearby = [&](std::size_t i) {
+    if (match.message_of[i] == 0) return false;
+    const std::size_t begin = i - std::min(i, refused + 1), end = std::min(count, i + refused + 2);
+    for (std::size_t k = begin; k < end; ++k) {
+      double off = 0;
+      for (std::size_t m = 0; m < 3; ++m)
+        off = std::max(off, std::abs(wanted[k][m] - wanted[i][m]));
+      if (k != i && off <= 2) return false;  // quanta; a match may be 0.51 off
+    }
+    return true;
+  };
+  std::size_t before = SIZE_MAX;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!unlike_nearby(i)) continue;
+    const bool same =
+        before != SIZE_MAX && match.message_of[i] - match.message_of[before] == i - before;
+    for (std::size_t k = same ? before : i; k <= i; ++k) match.certain[k] = true;
+    before = i;
+  }
+}
 
 double difference(const Message& message, const Numbers& wanted) {
   double off = 0;
@@ -232,6 +262,7 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
     best = std::move(match);
     best_first = first;
   }
+  mark_certain(wanted, driven.refused, best);
   bad += say(best_first != 0 && best.wrong == 0 && best.compared > wanted.size() * 9 / 10,
              arm.name + " force",
              std::to_string(best.compared) + " messages compared, " + std::to_string(best.wrong) +
@@ -240,8 +271,8 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
                  " refused ones omitted");
 
   // Delay: only for reports whose counts differ from those of all nearby reports, so that the tick
-  // certainly responds to this report. One in a hundred may still be matched with a later report,
-  // whose response then seems too early.
+  // certainly responds to this report, and only where its message is certain. One in a hundred may
+  // still be matched with a later report, whose response then seems too early.
   constexpr std::size_t kNear = 25;  // reports before and after [chosen]
   std::vector<double> delays;        // ms
   std::size_t early = 0;             // responses within the frame of their report
@@ -256,7 +287,7 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
     // The trace lacks no report nearby, with which the tick could be matched instead.
     const bool whole =
         trace.reports[k + kNear].number - trace.reports[k - kNear].number == 2 * kNear;
-    const bool sure = alike == 1 && whole;
+    const bool sure = alike == 1 && whole && best.certain[i];
     const auto message = trace.messages.find(best.message_of[i]);
     if (!sure || message == trace.messages.end()) continue;
     if (message->second.frame <= report.sampled_frame) {

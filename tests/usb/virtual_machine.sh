@@ -161,5 +161,6 @@ fi
 } >"$work/faults.md"
 failed=$(cat $logs | grep -ac '^FAIL' || true)
 passed=$(cat $logs | grep -ac '^PASS' || true)
+grep -ah '^FAIL' $logs || true  # again: the log of a test is often cut to its last lines
 echo "$passed passed, $failed failed; complete log: $logs"
 [ "$failed" = 0 ] && [ "$passed" -gt 0 ]
