@@ -92,6 +92,23 @@ class THIMBLE_EXPORT GodObjectContact {
     state_.p_WP = p_OP_;
   }
 
+  /// Begins contact on a triangle with the proxy at `p_WP` (W, m), whatever the path of the tip:
+  /// for a world of several objects (render/src/world). Real-time: safe.
+  void begin(std::int32_t triangle, const Eigen::Vector3d& p_WP) noexcept {
+    set_free(p_WP);
+    place_ = {.triangle = triangle};
+    state_.touching = true;
+    state_.triangle = triangle;
+    state_.n_W = mesh_->cell(triangle).face.n;
+    state_.p_WP = p_WP;
+  }
+  /// Ends the contact, if any, and places the free tip at `p_WT` (W, m). Real-time: safe.
+  void set_free(const Eigen::Vector3d& p_WT) noexcept {
+    state_ = {};
+    has_before_ = true;
+    p_OP_ = p_WT;
+  }
+
   /// Returns the position of a free tip in the last `update`, m in O; NaN if there was none, or it
   /// touches. Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept {

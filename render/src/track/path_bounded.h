@@ -73,6 +73,10 @@ class ProxyFilter {
   /// `follow`. This counts like path of the tip. Real-time: safe.
   void surface_moved(double path) noexcept { surface_path_ += path; }
 
+  /// Scales the distance from the tip to the far end of the spring, for a caller that changes the
+  /// unit in which it is measured. Real-time: safe.
+  void rescale(double factor) noexcept { p_WA_ = p_WT_ + factor * (p_WA_ - p_WT_); }
+
   /// Returns the felt contact of a tick in which `follow` returned false. Real-time: safe.
   const ContactState& felt() const noexcept { return felt_; }
 
@@ -157,6 +161,8 @@ class PathBounded {
   }
 
   const Contact& contact() const noexcept { return contact_; }
+  /// Returns the wrapped stage, for a caller that bounds the felt contact itself.
+  Contact& contact() noexcept { return contact_; }
   const ProxyFilter& filter() const noexcept { return filter_; }
   decltype(auto) search() const noexcept { return contact_.search(); }
   decltype(auto) mesh() const noexcept requires requires(const Contact& contact) { contact.mesh(); }
