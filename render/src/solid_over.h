@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "world_solid.h"
@@ -42,6 +44,9 @@ class SolidOver : public WorldSolid {
   const ContactState& follow_closely(const ContactState& last,
                                      const Eigen::Vector3d& p_W) noexcept override {
     return surface_.follow_closely(last, p_W);
+  }
+  std::size_t holding_faces(std::array<Eigen::Vector3d, 3>& n_W) const noexcept override {
+    return surface_.holding_faces(n_W);
   }
   driver::ForceCommand feel(const driver::DeviceState& state,
                             const ContactState& contact) noexcept override {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "thimble/driver/device_state.h"
@@ -84,6 +86,12 @@ class WorldSolid {
   /// from the contact `last`.
   virtual const ContactState& follow_closely(const ContactState& last,
                                              const Eigen::Vector3d& p_W) noexcept = 0;
+  /// Writes the normals of the faces on which the proxy of the last `follow` rests, if these are
+  /// two or three that form a concave edge or corner of the solid itself, and returns their number;
+  /// 0 where one plane describes the contact.
+  virtual std::size_t holding_faces(std::array<Eigen::Vector3d, 3>& /*n_W*/) const noexcept {
+    return 0;
+  }
   /// Returns the force of a contact, which was found at `state.p_WT` and may have been changed in
   /// depth and normal.
   virtual driver::ForceCommand feel(const driver::DeviceState& state,

@@ -123,6 +123,9 @@ class THIMBLE_EXPORT GodObjectContact {
   /// edge, zero in a corner (surface_response.h). Real-time: safe.
   ClosestSurfacePoint closest(const Eigen::Vector3d& p_OT) const noexcept;
 
+  /// Returns the part of the surface on which a touching proxy rests. Real-time: safe.
+  const SurfacePlace& place() const noexcept { return place_; }
+
   const GodObjectCounters& counters() const noexcept { return counters_; }
   const ContactMesh& mesh() const noexcept { return *mesh_; }
   const ContactSearch& search() const noexcept { return *search_; }

@@ -66,7 +66,7 @@ PushOut push_out(std::span<const ActivePlane> planes, const Vector3d& p, double 
     best.d = best.lambda[0] * planes[0].n;
     return best;
   }
-  std::array<double, kActiveMax> depth;
+  std::array<double, kPlanesMax> depth;
   double deepest = 0;
   for (std::size_t i = 0; i < count; ++i) {
     depth[i] = planes[i].depth(p) + lift;

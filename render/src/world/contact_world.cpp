@@ -28,6 +28,10 @@ constexpr int kAgreeMax = 6;
 // Longest way out of a notch between faces, in lifts: 2 degrees. [chosen]
 constexpr double kNotchMax = 64;
 
+// Depth at which an active solid is followed at least, in lifts. The others may lift the tip off it
+// by their lifts. [chosen]
+constexpr double kNearest = 64;
+
 // Way of the tip after which a refused tracker is asked again, as a share of the depth: where faces
 // meet, trackers hop within about the depth. [chosen]
 constexpr double kAskAgain = 0.125;
@@ -77,7 +81,7 @@ driver::ForceCommand ContactWorld::operator()(const driver::DeviceState& state) 
   } else if (!has_proxy_) [[unlikely]] {
     start(state);
   } else if (active_count_ == 0 && near_.empty() && ghosts_.empty() && changing_.empty() &&
-             (p_WT - near_centre_).squaredNorm() < near_squared_) {
+             moving_.empty() && (p_WT - near_centre_).squaredNorm() < near_squared_) {
     // Far from all solids.
     p_WQ_ = p_WT;
   } else {
@@ -153,23 +157,68 @@ bool ContactWorld::is_active(std::int32_t i) const noexcept {
   return false;
 }
 
-std::span<const ActivePlane> ContactWorld::planes(Planes& room) const noexcept {
-  for (std::size_t i = 0; i < active_count_; ++i) room[i] = active_[i].plane;
-  return {room.data(), active_count_};
+ContactWorld::Planes ContactWorld::planes() const noexcept {
+  Planes list;
+  const auto add = [&](std::size_t owner, const ActivePlane& plane) {
+    list.plane[list.count] = plane;
+    list.owner[list.count++] = owner;
+  };
+  for (std::size_t i = 0; i < active_count_; ++i) {
+    const Active& active = active_[i];
+    // Each solid has at least one plane.
+    const std::size_t room = kPlanesMax - list.count - (active_count_ - 1 - i);
+    if (active.face_count == 0 || active.face_count > room) {
+      add(i, active.plane);
+      continue;
+    }
+    const Vector3d p_W = active.at_W + active.found.depth * active.found.n_W;
+    for (std::size_t k = 0; k < active.face_count; ++k) {
+      add(i, {.n = active.faces_W[k], .offset = active.faces_W[k].dot(p_W)});
+    }
+  }
+  return list;
+}
+
+// Returns the shortest way out of all planes.
+ContactWorld::Push ContactWorld::push(const Vector3d& p_WT) const noexcept {
+  const Planes list = planes();
+  Push push;
+  push.out = push_out(list.all(), p_WT, 0, lift_ / 4);
+  for (std::size_t i = 0; i < active_count_; ++i) {
+    push.way[i].setZero();
+    push.n[i] = active_[i].plane.n;
+  }
+  for (std::size_t k = 0; k < list.count; ++k) {
+    if (!(push.out.lambda[k] > 0)) continue;
+    const std::size_t i = list.owner[k];
+    push.way[i] += push.out.lambda[k] * list.plane[k].n;
+    push.n[i] = list.plane[k].n;
+    push.lambda[i] = push.lambda[i] == 0 ? push.out.lambda[k] : -1;  // -1: of several planes
+  }
+  for (std::size_t i = 0; i < active_count_; ++i) {
+    if (push.lambda[i] != -1) continue;
+    push.lambda[i] = push.way[i].norm();
+    push.n[i] = push.way[i] / push.lambda[i];
+  }
+  return push;
+}
+
+// Returns the point closest to the tip that is in front of all planes by the lift.
+Vector3d ContactWorld::lifted(const Vector3d& p_WT) const noexcept {
+  const Planes list = planes();
+  return p_WT + push_out(list.all(), p_WT, lift_, lift_ / 4).d;
 }
 
 // Moves the proxy to where the active solids let it, and begins those that it meets on its way.
 void ContactWorld::move(const Vector3d& p_WT) noexcept {
   reached_ = p_WQ_;
   for (std::size_t i = 0; i < active_count_; ++i) active_[i].tried = false;
-  Planes room;
   int agreed = 0;
   for (int round = 0; round < kRoundsMax; ++round) {
     const bool ended = active_count_ > 0 && follow_active(p_WT);
     if (ended) {
       // Over the extended faces of those that have let go.
-      const PushOut over = push_out(planes(room), p_WT, lift_, lift_ / 4);
-      if (advance(p_WT + over.d)) {
+      if (advance(lifted(p_WT))) {
         // Stopped before the end of those faces.
         revive_ended();
       } else {
@@ -177,15 +226,13 @@ void ContactWorld::move(const Vector3d& p_WT) noexcept {
       }
       continue;
     }
-    push_ = push_out(planes(room), p_WT, 0, lift_ / 4);
-    if (active_count_ > 1 && !agrees(p_WT, push_) && ++agreed < kAgreeMax) continue;
-    Vector3d goal = p_WT + push_.d;
-    if (active_count_ == 1) {
-      goal += lift_ * active_[0].plane.n;
-    } else if (active_count_ > 1) {
-      goal = p_WT + push_out(planes(room), p_WT, lift_, lift_ / 4).d;
+    if (active_count_ == 0) {
+      push_ = {};
+    } else {
+      push_ = push(p_WT);
+      if (active_count_ > 1 && !agrees(p_WT, push_) && ++agreed < kAgreeMax) continue;
     }
-    if (advance(goal)) {
+    if (advance(active_count_ == 0 ? p_WT : lifted(p_WT))) {
       agreed = 0;
       continue;
     }
@@ -195,7 +242,7 @@ void ContactWorld::move(const Vector3d& p_WT) noexcept {
   }
   ++counters_.unsettled;
   p_WQ_ = reached_;
-  push_ = push_out(planes(room), p_WT, 0, lift_ / 4);
+  push_ = push(p_WT);
 }
 
 // Moves the proxy straight towards `goal`. Returns whether it has met a solid, which is then
@@ -235,6 +282,7 @@ void ContactWorld::begin(std::int32_t i, std::int32_t triangle, const Vector3d& 
                                     push_.lambda.begin());
   }
   push_.lambda[slot] = 0;
+  push_.way[slot].setZero();
   Active& active = active_[slot];
   active = {};
   active.solid = i;
@@ -243,36 +291,48 @@ void ContactWorld::begin(std::int32_t i, std::int32_t triangle, const Vector3d& 
   active.plane = {.n = active.found.n_W, .offset = active.found.n_W.dot(p_W)};
   ++counters_.begun;
   // In front of it, and of the others that it meets there.
-  Planes close;
+  Planes close = planes();
   std::size_t count = 0;
-  for (std::size_t k = 0; k < active_count_; ++k) {
-    if (std::abs(active_[k].plane.depth(p_W)) < 4 * lift_) close[count++] = active_[k].plane;
+  for (std::size_t k = 0; k < close.count; ++k) {
+    if (std::abs(close.plane[k].depth(p_W)) < 4 * lift_) close.plane[count++] = close.plane[k];
   }
-  reached_ = p_W + push_out({close.data(), count}, p_W, lift_, lift_ / 4).d;
+  close.count = count;
+  reached_ = p_W + push_out(close.all(), p_W, lift_, lift_ / 4).d;
 }
 
 // Returns the tip as pushed out by all active solids but `i`, and `lift` off them.
-Vector3d ContactWorld::shifted(const Vector3d& p_WT, const PushOut& push, std::size_t i,
+Vector3d ContactWorld::shifted(const Vector3d& p_WT, const Push& push, std::size_t i,
                                double lift) const noexcept {
   Vector3d x = p_WT;
   for (std::size_t k = 0; k < active_count_; ++k) {
     if (k == i || !(push.lambda[k] > 0)) continue;
-    x += (push.lambda[k] + lift) * active_[k].plane.n;
+    x += push.way[k] + lift * push.n[k];
   }
   return x;
 }
 
+// Returns by how much the position at which solid i is followed lies nearer to its surface than the
+// tip as pushed out by the others. The proxy of a solid is the same for all positions below it on
+// the normal there (or in the cone of normals), but on a curved surface the plane of a deep
+// position is a worse guess: with a depth l below a sphere of radius r an error grows by l / (r -
+// l) in each round. At the depth t, where t is the way from the last contact to where the planes
+// now lead, it falls to about t^2 / r, as in Newton's method.
+double ContactWorld::nearer(const Vector3d& p_WT, const Push& push, std::size_t i) const noexcept {
+  const double lambda = push.lambda[i];
+  if (!(lambda > 0)) return 0;
+  const double way = (p_WT + push.out.d - active_[i].found.p_WP).norm();
+  return std::max(0.0, lambda - std::max(way, kNearest * lift_));
+}
+
 // Follows each active solid at the tip as the others push it. Returns whether one has let go.
 bool ContactWorld::follow_active(const Vector3d& p_WT) noexcept {
-  PushOut push;
-  if (active_count_ > 1) {
-    Planes room;
-    push = push_out(planes(room), p_WT, 0, lift_ / 4);
-  }
+  Push push;
+  if (active_count_ > 1) push = this->push(p_WT);
   bool ended = false;
   for (std::size_t i = 0; i < active_count_; ++i) {
     Active& active = active_[i];
     active.at_W = shifted(p_WT, push, i, lift_);
+    if (active_count_ > 1) active.at_W += nearer(p_WT, push, i) * push.n[i];
     const ContactState found = follow_one(active);
     active.fresh = false;
     // Written so that NaN lets go.
@@ -283,6 +343,7 @@ bool ContactWorld::follow_active(const Vector3d& p_WT) noexcept {
     }
     active.found = found;
     active.plane = {.n = found.n_W, .offset = found.n_W.dot(active.at_W) + found.depth};
+    active.face_count = active_count_ > 1 ? solid(active.solid).holding_faces(active.faces_W) : 0;
   }
   return ended;
 }
@@ -317,11 +378,12 @@ const ContactState& ContactWorld::follow_one(Active& active) noexcept {
 
 // Returns whether the proxy of a contact is inside another solid.
 bool ContactWorld::hidden(const Active& active, const ContactState& found) noexcept {
-  Planes room;
-  const std::span<const ActivePlane> all = planes(room);
-  const auto own = static_cast<std::size_t>(&active - active_.data());
-  room[own] = {.n = found.n_W, .offset = found.n_W.dot(found.p_WP)};
-  const PushOut off = push_out(all, found.p_WP, lift_, lift_ / 4);
+  Planes list;
+  for (std::size_t i = 0; i < active_count_; ++i) list.plane[i] = active_[i].plane;
+  list.count = active_count_;
+  list.plane[static_cast<std::size_t>(&active - active_.data())] = {
+      .n = found.n_W, .offset = found.n_W.dot(found.p_WP)};
+  const PushOut off = push_out(list.all(), found.p_WP, lift_, lift_ / 4);
   // No place in front of all: the face lies on the one of another solid.
   if (!off.feasible || !(off.d.norm() < kNotchMax * lift_)) return true;
   const Vector3d p_W = found.p_WP + off.d;
@@ -337,9 +399,10 @@ bool ContactWorld::hidden(const Active& active, const ContactState& found) noexc
 }
 
 // Returns whether the active solids were followed where `push` leads.
-bool ContactWorld::agrees(const Vector3d& p_WT, const PushOut& push) const noexcept {
+bool ContactWorld::agrees(const Vector3d& p_WT, const Push& push) const noexcept {
   for (std::size_t i = 0; i < active_count_; ++i) {
-    const Vector3d off = shifted(p_WT, push, i, lift_) - active_[i].at_W;
+    Vector3d off = shifted(p_WT, push, i, lift_) - active_[i].at_W;
+    if (push.lambda[i] > 0) off -= push.n[i].dot(off) * push.n[i];
     if (!(off.squaredNorm() <= lift_ * lift_ / 4)) return false;
   }
   return true;
@@ -436,9 +499,9 @@ driver::ForceCommand ContactWorld::feel_one(const driver::DeviceState& state) no
 }
 
 driver::ForceCommand ContactWorld::feel_several(const driver::DeviceState& state) noexcept {
-  Planes room;
-  const std::span<const ActivePlane> all = planes(room);
+  const Planes list = planes();
   std::array<double, kActiveMax> stiffness{};
+  std::array<double, kPlanesMax> plane_stiffness{};
   std::array<std::int32_t, kActiveMax> felt{};
   std::size_t felt_count = 0;
   double stiffest = 0, lambda_sum = 0, squares = 0, weighted = 0;
@@ -448,15 +511,20 @@ driver::ForceCommand ContactWorld::feel_several(const driver::DeviceState& state
     stiffness[i] = solid(active_[i].solid).stiffness();
     stiffest = std::max(stiffest, stiffness[i]);
     lambda_sum += lambda;
-    squares += lambda * lambda;
-    weighted += lambda * lambda * stiffness[i];
     felt[felt_count++] = active_[i].solid;
+  }
+  for (std::size_t k = 0; k < list.count; ++k) {
+    const double squared = push_.out.lambda[k] * push_.out.lambda[k];
+    plane_stiffness[k] = stiffness[list.owner[k]];
+    squares += squared;
+    weighted += squared * plane_stiffness[k];
   }
   if (stiffest > stiffness_ref_) {
     if (stiffness_ref_ > 0) filter_.rescale(stiffness_ref_ / stiffest);
     stiffness_ref_ = stiffest;
   }
-  SharedForce shared = shared_force_of(all, std::span(stiffness).first(active_count_), push_);
+  const SharedForce shared =
+      shared_force_of(list.all(), std::span(plane_stiffness).first(list.count), push_.out);
   ContactState goal{.touching = true, .triangle = active_[0].found.triangle};
   goal.n_W = active_[0].found.n_W;
   const double size = shared.f_W.norm();
@@ -471,26 +539,27 @@ driver::ForceCommand ContactWorld::feel_several(const driver::DeviceState& state
   }
   leave_others(std::span(felt).first(felt_count));
   // Each solid is felt with its part of the force; what no normal can give is shared.
+  std::array<Vector3d, kActiveMax> part;
+  part.fill(Vector3d::Zero());
   Vector3d rest = f_W;
-  for (std::size_t i = 0; i < active_count_; ++i) {
-    shared.part[i] = std::max(shared.part[i], 0.0);
-    rest -= shared.part[i] * all[i].n;
+  for (std::size_t k = 0; k < list.count; ++k) {
+    const Vector3d one = std::max(shared.part[k], 0.0) * list.plane[k].n;
+    part[list.owner[k]] += one;
+    rest -= one;
   }
   const bool exact = rest.squaredNorm() <= 1e-24 * f_W.squaredNorm();
   driver::ForceCommand command;
   double deepest = -1;
   for (std::size_t i = 0; i < active_count_; ++i) {
     if (!(push_.lambda[i] > 0) || !(stiffness[i] > 0)) continue;
+    if (!exact) part[i] += push_.lambda[i] / lambda_sum * rest;
     ContactState contact = active_[i].found;
-    contact.depth = shared.part[i] / stiffness[i];
+    contact.n_W = push_.n[i];
+    const double size_i = part[i].norm();
+    contact.depth = size_i / stiffness[i];
+    if (size_i > 0) contact.n_W = part[i] / size_i;
     driver::DeviceState there = state;
     there.p_WT = shifted(state.p_WT, push_, i, 0);
-    if (!exact) {
-      const Vector3d way =
-          contact.depth * contact.n_W + push_.lambda[i] / (lambda_sum * stiffness[i]) * rest;
-      contact.depth = way.norm();
-      if (contact.depth > 0) contact.n_W = way / contact.depth;
-    }
     contact.p_WP = there.p_WT + contact.depth * contact.n_W;
     const driver::ForceCommand one = solid(active_[i].solid).feel(there, contact);
     command.f_T_W += one.f_T_W;

@@ -69,16 +69,31 @@ class THIMBLE_EXPORT ContactWorld {
  private:
   struct Active {
     std::int32_t solid = -1;
-    ActivePlane plane;
-    ContactState found;                     // contact at `at_W`, or at the begin
-    Eigen::Vector3d at_W{0, 0, 0};          // tip as pushed out by the others
-    bool fresh = false;                     // begun, and not followed since
-    bool ended = false;                     // has let go
-    bool closely = false;                   // the tracker's proxy was refused
-    Eigen::Vector3d refused_at_W{0, 0, 0};  // tip when the tracker was asked last
-    bool tried = false;                     // whether the tracker was asked again in this tick
+    ActivePlane plane;                                // of the contact as a whole
+    std::array<Eigen::Vector3d, kCornerMax> faces_W;  // normals of its own concave edge or corner
+    std::size_t face_count = 0;                       // 0: `plane` is the only one
+    ContactState found;                               // contact at `at_W`, or at the begin
+    Eigen::Vector3d at_W{0, 0, 0};                    // tip as pushed out by the others
+    bool fresh = false;                               // begun, and not followed since
+    bool ended = false;                               // has let go
+    bool closely = false;                             // the tracker's proxy was refused
+    Eigen::Vector3d refused_at_W{0, 0, 0};            // tip when the tracker was asked last
+    bool tried = false;  // whether the tracker was asked again in this tick
   };
-  using Planes = std::array<ActivePlane, kActiveMax>;
+  // All planes of the active solids.
+  struct Planes {
+    std::array<ActivePlane, kPlanesMax> plane;
+    std::array<std::size_t, kPlanesMax> owner;  // number in `active_`
+    std::size_t count = 0;
+    std::span<const ActivePlane> all() const noexcept { return {plane.data(), count}; }
+  };
+  // The shortest way out of all planes, and the part of each active solid in it.
+  struct Push {
+    PushOut out;
+    std::array<Eigen::Vector3d, kActiveMax> way;
+    std::array<double, kActiveMax> lambda{};    // length of `way`
+    std::array<Eigen::Vector3d, kActiveMax> n;  // its direction
+  };
 
   void move(const Eigen::Vector3d& p_WT) noexcept;
   bool advance(const Eigen::Vector3d& goal) noexcept;
@@ -86,12 +101,15 @@ class THIMBLE_EXPORT ContactWorld {
   bool follow_active(const Eigen::Vector3d& p_WT) noexcept;
   const ContactState& follow_one(Active& active) noexcept;
   bool hidden(const Active& active, const ContactState& found) noexcept;
-  Eigen::Vector3d shifted(const Eigen::Vector3d& p_WT, const PushOut& push, std::size_t i,
+  Eigen::Vector3d shifted(const Eigen::Vector3d& p_WT, const Push& push, std::size_t i,
                           double lift) const noexcept;
-  bool agrees(const Eigen::Vector3d& p_WT, const PushOut& push) const noexcept;
+  double nearer(const Eigen::Vector3d& p_WT, const Push& push, std::size_t i) const noexcept;
+  bool agrees(const Eigen::Vector3d& p_WT, const Push& push) const noexcept;
   void revive_ended() noexcept;
   void drop_ended() noexcept;
-  std::span<const ActivePlane> planes(Planes& room) const noexcept;
+  Planes planes() const noexcept;
+  Push push(const Eigen::Vector3d& p_WT) const noexcept;
+  Eigen::Vector3d lifted(const Eigen::Vector3d& p_WT) const noexcept;
   void look_around(const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept;
   void start(const driver::DeviceState& state) noexcept;
   void carry(const driver::DeviceState& state) noexcept;
@@ -114,7 +132,7 @@ class THIMBLE_EXPORT ContactWorld {
   Eigen::Vector3d p_WQ_{0, 0, 0};  // proxy of the last tick, lifted
   bool has_proxy_ = false;
   Eigen::Vector3d reached_{0, 0, 0};  // place on the proxy's path of this tick
-  PushOut push_;
+  Push push_;
   std::array<Active, kActiveMax> active_;
   std::size_t active_count_ = 0;
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -15,6 +17,7 @@
 #include "track/god_object.h"
 #include "track/moving_contact.h"
 #include "track/path_bounded.h"
+#include "world/holding_faces.h"
 #include "world_solid.h"
 
 namespace thimble::render {
@@ -162,6 +165,19 @@ class LawSolid final : public WorldSolid {
     }
     closely_ = true;
     return state_;
+  }
+
+  std::size_t holding_faces(std::array<Eigen::Vector3d, 3>& n_W) const noexcept override {
+    const auto at = [&](const GodObjectContact& contact) {
+      return render::holding_faces(contact.mesh(), contact.place(), contact.state().n_W, n_W);
+    };
+    if constexpr (std::is_same_v<Contact, GodObjectContact>) {
+      if (!closely_) return at(contact());
+    }
+    if constexpr (kHasMesh) {
+      if (closely_) return at(*fallback_);
+    }
+    return 0;
   }
 
   driver::ForceCommand feel(const driver::DeviceState& state,

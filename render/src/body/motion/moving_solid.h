@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "body/motion/body_frame.h"
@@ -75,6 +77,11 @@ class MovingSolid final : public WorldSolid {
                                      const Eigen::Vector3d& p_W) noexcept override {
     p_B_followed_ = to_B(p_W);
     return in_W(surface_.follow_closely(in_B(last), p_B_followed_));
+  }
+  std::size_t holding_faces(std::array<Eigen::Vector3d, 3>& n_W) const noexcept override {
+    const std::size_t count = surface_.holding_faces(n_W);
+    for (std::size_t i = 0; i < count; ++i) n_W[i] = frame_.R_WB * n_W[i];
+    return count;
   }
   driver::ForceCommand feel(const driver::DeviceState& state,
                             const ContactState& contact) noexcept override {

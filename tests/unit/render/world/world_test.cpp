@@ -135,8 +135,7 @@ TEST(World, ShapesWithoutAMeshAreFeltAsMeshesAre) {
   }
 }
 
-// Fails today (render/src/world/README.md).
-TEST(World, DISABLED_SphereOnAPlaneStopsATipThatPressesThePlane) {
+TEST(World, SphereOnAPlaneStopsATipThatPressesThePlane) {
   std::vector<std::unique_ptr<ObjectTouch>> objects;
   objects.push_back(build_primitive_touch(HalfSpace{}, {.spring = {.stiffness = kStiffness}}));
   objects.push_back(build_primitive_touch(Sphere{.p_WO = {0.02, 0, 0.015}, .radius = 0.02},
