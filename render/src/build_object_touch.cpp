@@ -135,7 +135,7 @@ Built parts_touch(std::vector<MeshPart> parts, const std::shared_ptr<const Conta
 
 Built build_object_touch(const StillSurface& still, const TriangleMesh& mesh_W,
                          const ContactChoice& choice, const SurfaceChoice& surface) {
-  if (surface.union_of_parts && !surface.dent) {
+  if (!surface.dent) {
     auto parts = overlapping_parts(mesh_W);
     if (parts.size() > 1) return parts_touch(std::move(parts), still.mesh, choice, surface);
   }

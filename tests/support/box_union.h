@@ -54,7 +54,7 @@ inline render::SceneTouch scene_of(const std::vector<SolidBlock>& blocks,
                                    {.spring = {.stiffness = block.stiffness, .damping = damping}})
             .value());
   }
-  return render::SceneTouch(std::move(objects), render::SharedProxy::kYes);
+  return render::SceneTouch(std::move(objects));
 }
 
 /// Returns whether `q` is a local minimum of the distance from `p` outside of all boxes: whether q

@@ -257,8 +257,7 @@ void PackedContact<Store>::end() noexcept {
 }
 
 template <PackedStore Store>
-void PackedContact<Store>::begin_at(std::int32_t triangle, const Eigen::Vector3d& p_WP) noexcept
-    requires(Store::kComplete) {
+void PackedContact<Store>::begin_at(std::int32_t triangle, const Eigen::Vector3d& p_WP) noexcept {
   set_free(p_WP);
   if (!activate(triangle)) return;
   held_on_ = SurfacePlace::On::kFace;
@@ -269,8 +268,7 @@ void PackedContact<Store>::begin_at(std::int32_t triangle, const Eigen::Vector3d
 }
 
 template <PackedStore Store>
-void PackedContact<Store>::set_free(const Eigen::Vector3d& p_WT) noexcept
-    requires(Store::kComplete) {
+void PackedContact<Store>::set_free(const Eigen::Vector3d& p_WT) noexcept {
   if (state_.touching) {
     end();
     above_ = true;

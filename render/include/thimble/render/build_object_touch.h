@@ -25,9 +25,6 @@ struct SurfaceChoice {
   std::optional<DentSettings> dent = {};
   /// Deformation of the base points; only for a mesh in memory.
   ShapeChoice shape = {};
-  /// Divides a stiff mesh whose parts overlap into solids, so that the tip feels their union
-  /// (render/src/world). Not used by scene files yet.
-  bool union_of_parts = false;
 };
 
 /// Builds the force law of one object (mesh in W, m) from only the stages that `choice` and

@@ -15,40 +15,39 @@ namespace thimble::render {
 
 class ContactWorld;
 
-/// Whether the solids of a scene share one proxy.
-enum class SharedProxy {
-  kNo,   ///< Each object has its own, and the forces are added.
-  kYes,  ///< The tip feels the union of all solids (render/src/world). Not used by scene files yet.
-};
-
-/// Force law of a scene. The forces of its objects are added, unless its solids share one proxy.
-/// The contact information is that of the object in which the tip is deepest.
+/// Force law of a scene. The tip feels the union of all solids of its objects (render/src/world);
+/// the forces of the other objects, such as fields, are added. The contact information is that of
+/// the object in which the tip is deepest.
 class THIMBLE_EXPORT SceneTouch {
  public:
   /// Constructs the law from the objects in the scene's order. TouchInfo::object is the index of an
   /// object in this order, from 0.
-  explicit SceneTouch(std::vector<std::unique_ptr<ObjectTouch>> objects,
-                      SharedProxy shared = SharedProxy::kNo);
+  explicit SceneTouch(std::vector<std::unique_ptr<ObjectTouch>> objects);
   SceneTouch(SceneTouch&&) noexcept;             ///< Moves all objects.
   SceneTouch& operator=(SceneTouch&&) noexcept;  ///< Moves all objects.
   ~SceneTouch();
 
   /// Returns the force of the scene on the hand. Real-time: safe.
-  [[gnu::always_inline]] driver::ForceCommand operator()(
-      const driver::DeviceState& state) noexcept {
-    if (world_) [[unlikely]]
-      return in_world(state);
+  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
     driver::ForceCommand sum;
-    for (std::size_t i = 0; i < objects_.size(); ++i) add(i, state, sum);
+    for (const Felt& felt : felt_) {
+      const driver::ForceCommand one = felt.touch->update(state);
+      sum.f_T_W += one.f_T_W;
+      sum.stored += one.stored;
+      sum.f_program_W += one.f_program_W;
+      // A contact of depth 0, over the groove of a texture, counts too.
+      if (one.touch.in_contact && !(sum.touch.in_contact && one.touch.depth <= sum.touch.depth)) {
+        sum.touch = one.touch;
+        sum.touch.object = static_cast<std::int16_t>(felt.object + one.touch.object);
+      }
+    }
     return sum;
   }
 
   /// Prefetches the memory of all objects that a tick with about the state `expected` will read
   /// (ForceLaw::prepare). Real-time: safe.
   void prepare(const driver::DeviceState& expected) const noexcept {
-    if (world_) [[unlikely]]
-      return prepare_world(expected);
-    for (const auto& object : objects_) object->prepare(expected);
+    for (const Felt& felt : felt_) felt.touch->prepare(expected);
   }
 
   /// Returns whether a point (W, m) is inside an object that has neither moved nor deformed. For
@@ -90,29 +89,21 @@ class THIMBLE_EXPORT SceneTouch {
   const ObjectTouch& object(std::size_t i) const noexcept { return *objects_[i]; }
   /// Overload for a scene that is not const.
   ObjectTouch& object(std::size_t i) noexcept { return *objects_[i]; }
-  /// Returns the world of the scene's solids; null if they share no proxy or are fewer than two.
-  /// Real-time: safe.
-  const ContactWorld* world() const noexcept { return world_.get(); }
+  /// Returns the world of the scene's solids; null if they are fewer than two. Real-time: safe.
+  const ContactWorld* world() const noexcept;
 
  private:
-  [[gnu::always_inline]] void add(std::size_t i, const driver::DeviceState& state,
-                                  driver::ForceCommand& sum) noexcept {
-    const driver::ForceCommand one = objects_[i]->update(state);
-    sum.f_T_W += one.f_T_W;
-    sum.stored += one.stored;
-    sum.f_program_W += one.f_program_W;
-    // A contact of depth 0, over the groove of a texture, counts too.
-    if (one.touch.in_contact && !(sum.touch.in_contact && one.touch.depth <= sum.touch.depth)) {
-      sum.touch = one.touch;
-      sum.touch.object = static_cast<std::int16_t>(i);
-    }
-  }
-  driver::ForceCommand in_world(const driver::DeviceState& state) noexcept;
-  void prepare_world(const driver::DeviceState& expected) const noexcept;
+  class WorldTouch;
+  // What runs in each tick: an object of its own number, whose touch has the number 0, or the
+  // world, whose touch has the number of the object.
+  struct Felt {
+    ObjectTouch* touch = nullptr;
+    std::int16_t object = 0;
+  };
 
   std::vector<std::unique_ptr<ObjectTouch>> objects_;
-  std::vector<std::size_t> apart_;  // With a world: objects whose forces are added.
-  std::unique_ptr<ContactWorld> world_;
+  std::unique_ptr<WorldTouch> world_;
+  std::vector<Felt> felt_;
 };
 
 }  // namespace thimble::render

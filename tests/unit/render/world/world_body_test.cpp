@@ -124,7 +124,7 @@ TEST(WorldBody, AFarSolidChangesNothing) {
     alone.push_back(kind.build());
     together.push_back(kind.build());
     together.push_back(block({.centre = {0, 0, 0.5}, .half = {0.01, 0.01, 0.01}}));
-    SceneTouch one(std::move(alone)), two(std::move(together), SharedProxy::kYes);
+    SceneTouch one(std::move(alone)), two(std::move(together));
     ASSERT_NE(two.world(), nullptr) << kind.name;
     Tip tip_one(one), tip_two(two);
     double most = 0, largest = 0;
@@ -149,7 +149,7 @@ TEST(WorldBody, TheHandAndAMovingBodyKeepTheirMomentum) {
   Objects objects;
   objects.push_back(moving(solid, {.kind = MotionKind::kTranslate, .mass = 0.5}));
   objects.push_back(block({.centre = {-0.02, 0, -0.02}, .half = {0.0201, 0.04, 0.02}}, kGodObject));
-  SceneTouch scene(std::move(objects), SharedProxy::kYes);
+  SceneTouch scene(std::move(objects));
   Tip tip(scene);
   double momentum = 0;
   double last = 0;
@@ -175,7 +175,7 @@ TEST(WorldBody, ABodyThatSweepsOverTheTipCarriesItToAWall) {
   Objects objects;
   objects.push_back(moving(solid, {.mass = 5, .v_W = {-0.05, 0, 0}}));
   objects.push_back(block({.centre = {-0.02, 0, 0}, .half = {0.01, 0.04, 0.04}}, kGodObject));
-  SceneTouch scene(std::move(objects), SharedProxy::kYes);
+  SceneTouch scene(std::move(objects));
   Tip tip(scene);
   // The tip is held at the middle between both.
   double least = 0;
@@ -199,7 +199,7 @@ TEST(WorldBody, AMovableBlockOnATableIsPushedBySide) {
     objects.push_back(
         block({.centre = {0, 0, -0.01}, .half = {0.06, 0.03, 0.01}}, {.tracker = tracker}));
     objects.push_back(moving(solid, {.mass = 0.2, .damping = 3}, {.tracker = tracker}));
-    SceneTouch scene(std::move(objects), SharedProxy::kYes);
+    SceneTouch scene(std::move(objects));
     Tip tip(scene);
     driver::ForceCommand last;
     for (int i = 0; i < 1500; ++i) {
@@ -218,7 +218,7 @@ TEST(WorldBody, TicksAllocateNothing) {
     Objects objects;
     objects.push_back(kind.build());
     objects.push_back(block({.centre = {0, 0, -0.02}, .half = {0.03, 0.03, 0.01}}));
-    SceneTouch scene(std::move(objects), SharedProxy::kYes);
+    SceneTouch scene(std::move(objects));
     Tip tip(scene);
     const int calls = support::heap_calls_of([&] {
       for (int i = 0; i < 3000; ++i) {

@@ -47,7 +47,7 @@ TEST(WorldGroove, AWallAcrossAGrooveMakesACornerOfThreePlanes) {
     objects.push_back(build_object_touch(wall.mesh(), {.tracker = TrackerChoice::kGodObject},
                                          {.spring = {.stiffness = kStiffness}})
                           .value());
-    SceneTouch scene(std::move(objects), SharedProxy::kYes);
+    SceneTouch scene(std::move(objects));
     const std::array<ActivePlane, 3> planes{
         ActivePlane{{std::sin(kLeft), 0, std::cos(kLeft)}, 0},
         ActivePlane{{-std::sin(kRight), 0, std::cos(kRight)}, 0}, ActivePlane{n, n.y() * 0.004}};

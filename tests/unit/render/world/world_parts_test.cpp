@@ -59,10 +59,9 @@ TriangleMesh post_mesh() {
 
 SceneTouch one_object(const TriangleMesh& mesh, TrackerChoice tracker) {
   std::vector<std::unique_ptr<ObjectTouch>> objects;
-  objects.push_back(build_object_touch(mesh, {.tracker = tracker},
-                                       {.spring = {.stiffness = 800}, .union_of_parts = true})
-                        .value());
-  return SceneTouch(std::move(objects), SharedProxy::kYes);
+  objects.push_back(
+      build_object_touch(mesh, {.tracker = tracker}, {.spring = {.stiffness = 800}}).value());
+  return SceneTouch(std::move(objects));
 }
 
 TEST(OverlappingParts, AreThoseWhoseBoxesOverlap) {
@@ -114,12 +113,12 @@ TEST(WorldParts, AreFeltAsSeveralObjectsAre) {
 TEST(WorldParts, AreFeltOnABodyThatMoves) {
   const TriangleMesh mesh = post_mesh();
   auto object = build_object_touch(mesh, {.tracker = TrackerChoice::kGodObject},
-                                   {.spring = {.stiffness = 800}, .union_of_parts = true});
+                                   {.spring = {.stiffness = 800}});
   std::vector<std::unique_ptr<ObjectTouch>> objects;
   objects.push_back(
       move_object(std::move(object).value(), mesh, {.mass = 0.5, .damping = 2}, {.stiffness = 800})
           .value());
-  SceneTouch scene(std::move(objects), SharedProxy::kYes);
+  SceneTouch scene(std::move(objects));
   for (int i = 0; i < 2500; ++i) {
     scene(at({-0.015 + 1e-5 * std::max(0, i - 900), 0.001, std::max(-0.003, 0.004 - 1e-5 * i)}));
   }
@@ -127,9 +126,7 @@ TEST(WorldParts, AreFeltOnABodyThatMoves) {
 }
 
 TEST(WorldParts, OneSettingSetsAllParts) {
-  auto object =
-      build_object_touch(post_mesh(), {}, {.spring = {.stiffness = 800}, .union_of_parts = true})
-          .value();
+  auto object = build_object_touch(post_mesh(), {}, {.spring = {.stiffness = 800}}).value();
   LiveSettings settings(2000, 10);
   object->list_settings(settings);
   ASSERT_EQ(settings.list().size(), 2u);

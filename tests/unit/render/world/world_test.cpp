@@ -110,7 +110,7 @@ SceneTouch shapes_of(const std::vector<SolidBlock>& blocks) {
     box.half_sides = block.half;
     objects.push_back(build_primitive_touch(box, {.spring = {.stiffness = block.stiffness}}));
   }
-  return SceneTouch(std::move(objects), SharedProxy::kYes);
+  return SceneTouch(std::move(objects));
 }
 
 TEST(World, ShapesWithoutAMeshAreFeltAsMeshesAre) {
@@ -140,7 +140,7 @@ TEST(World, SphereOnAPlaneStopsATipThatPressesThePlane) {
   objects.push_back(build_primitive_touch(HalfSpace{}, {.spring = {.stiffness = kStiffness}}));
   objects.push_back(build_primitive_touch(Sphere{.p_WO = {0.02, 0, 0.015}, .radius = 0.02},
                                           {.spring = {.stiffness = kStiffness}}));
-  SceneTouch scene(std::move(objects), SharedProxy::kYes);
+  SceneTouch scene(std::move(objects));
   driver::ForceCommand last;
   for (int i = 0; i < 2500; ++i) {
     last = scene(at({-0.01 + 1e-5 * std::max(0, i - 400), 0, std::max(-0.002, 0.002 - 1e-5 * i)}));
