@@ -8,6 +8,7 @@
 #include "body/dent/bendable_polygon.h"
 #include "body/dent/dented_touch.h"
 #include "build_surface_touch.h"
+#include "mesh/overlapping_parts.h"
 #include "mesh/smooth_normals.h"
 #include "shape_object.h"
 #include "still_surface.h"
@@ -17,6 +18,7 @@
 #include "track/god_object.h"
 #include "track/mesh_contact.h"
 #include "tracker_table.h"
+#include "world/parts_touch.h"
 
 namespace thimble::render {
 namespace {
@@ -115,10 +117,28 @@ Built dented(Built touch, const TriangleMesh& mesh_W, const SurfaceChoice& surfa
   return Built(std::make_unique<DentedTouch>(std::move(touch).value(), std::move(dent).value()));
 }
 
+/// Builds an object of several parts that overlap, each a solid of its own.
+Built parts_touch(std::vector<MeshPart> parts, const std::shared_ptr<const ContactMesh>& mesh,
+                  const ContactChoice& choice, const SurfaceChoice& surface) {
+  std::vector<PartsTouch::Part> built;
+  for (MeshPart& part : parts) {
+    const auto still = prepare_still_surface(part.mesh, choice);
+    if (!still) return still.error();
+    auto touch = stiff_touch(*still, choice, surface);
+    if (!touch) return touch.error();
+    built.push_back({std::move(touch).value(), std::move(part.triangles)});
+  }
+  return Built(std::make_unique<PartsTouch>(std::move(built), mesh));
+}
+
 }  // namespace
 
 Built build_object_touch(const StillSurface& still, const TriangleMesh& mesh_W,
                          const ContactChoice& choice, const SurfaceChoice& surface) {
+  if (!surface.dent) {
+    auto parts = overlapping_parts(mesh_W);
+    if (parts.size() > 1) return parts_touch(std::move(parts), still.mesh, choice, surface);
+  }
   return dented(stiff_touch(still, choice, surface), mesh_W, surface);
 }
 

@@ -8,6 +8,8 @@
 #include "thimble/render/effect/stage_list.h"
 #include "thimble/render/object_touch.h"
 #include "track/path_bounded.h"
+#include "world/law_solid.h"
+#include "world/shape_solid.h"
 
 namespace thimble::render {
 
@@ -30,7 +32,13 @@ inline StageList stage_list(const SurfaceChoice& surface) {
 /// Wraps a law known at compile time in the interface of ObjectTouch.
 template <class Law>
 std::unique_ptr<ObjectTouch> adapt_law(Law law) {
-  return std::make_unique<ObjectTouchAdapter<Law>>(std::move(law));
+  auto adapter = std::make_unique<ObjectTouchAdapter<Law>>(std::move(law));
+  if constexpr (SolidLaw<Law>) {
+    adapter->set_solid(std::make_shared<LawSolid<Law>>(adapter->law()));
+  } else if constexpr (ShapeLaw<Law>) {
+    adapter->set_solid(std::make_shared<ShapeSolid<Law>>(adapter->law()));
+  }
+  return adapter;
 }
 
 /// Builds the force law of one object from a contact stage and a surface. Every contact is bounded

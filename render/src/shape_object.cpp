@@ -15,6 +15,7 @@
 #include "track/mesh_contact.h"
 #include "track/moving_contact.h"
 #include "track/path_bounded.h"
+#include "world/law_solid.h"
 
 namespace thimble::render {
 namespace {
@@ -30,8 +31,10 @@ Built shaped(std::shared_ptr<MovingMesh> mesh, Contact contact, const SurfaceCho
   using Bounded = PathBounded<Contact>;
   MovingContact<Bounded> moving(std::move(mesh), Bounded(std::move(contact)));
   const auto built = [&shape](auto touch) {
-    return Built(
-        std::make_unique<ShapedTouch<decltype(touch)>>(std::move(touch), std::move(shape)));
+    using Law = decltype(touch);
+    auto object = std::make_unique<ShapedTouch<Law>>(std::move(touch), std::move(shape));
+    object->set_solid(std::make_unique<LawSolid<Law>>(object->stages()));
+    return Built(std::move(object));
   };
   StageList stages = stage_list(surface);
   if (!stages.needs_closest_point())

@@ -55,6 +55,7 @@ layers='
   body: state settings touch mesh
   disk_paging: state mesh compact_mesh search track
   multirate: touch
+  world: state settings touch mesh compact_mesh search track field
 '
 upward=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' render | awk -v layers="$layers" '
   function layer(path) {
@@ -64,7 +65,7 @@ upward=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' render | awk
     sub(/^page\//, "disk_paging/", path)
     if (path ~ /^(contact_state|body_patch|body_pose|surface\/surface_response)$/) return "state"
     if (path ~ /^effect\/(effect_context|live_settings|map_settings|settings_reader)$/) return "settings"
-    if (path ~ /^(touch|object_touch|scene_touch)$/) return "touch"
+    if (path ~ /^(touch|object_touch|scene_touch|world_solid|solid_over)$/) return "touch"
     if (path !~ /\// || path == "effect/effect_table.cpp") return "build"
     sub(/\/.*/, "", path)
     return path

@@ -31,6 +31,14 @@ class THIMBLE_EXPORT EntryFaceContact {
   /// and makes the next tick a first one. Real-time: safe; a few ns.
   const ContactState& update(const driver::DeviceState& state) noexcept;
 
+  /// Begins contact on a face, whatever the path of the tip: for a world of several objects
+  /// (render/src/world). Real-time: safe.
+  void begin(std::int32_t face, const Eigen::Vector3d& p_WP) noexcept {
+    has_before_ = true;
+    p_O_before_ = box_.to_box(p_WP);
+    state_ = {.touching = true, .triangle = face, .n_W = box_.normal(face), .p_WP = p_WP};
+  }
+
   /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 

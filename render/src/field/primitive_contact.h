@@ -67,6 +67,15 @@ class PrimitiveContact {
     return state_;
   }
 
+  /// Begins contact on a face, whatever the path of the tip: for a world of several objects
+  /// (render/src/world). Real-time: safe.
+  void begin(std::int32_t face, const Eigen::Vector3d& p_WP) noexcept {
+    was_outside_ = true;
+    state_ = {.touching = true, .triangle = face, .p_WP = p_WP};
+    state_.n_W = shape_.place(p_WP, state_.n_W).n_W;
+    if constexpr (requires { shape_.normal(face); }) state_.n_W = shape_.normal(face);
+  }
+
   /// Returns the result of the last `update`. Real-time: safe.
   const ContactState& state() const noexcept { return state_; }
 

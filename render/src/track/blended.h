@@ -56,6 +56,17 @@ class Blended {
     contact_.surface_moved(swept_over);
     state_ = contact_.state();
   }
+  /// Begins contact on a triangle with the proxy at `p_WP` (W, m), whatever the path of the tip:
+  /// for a world of several objects (render/src/world). Real-time: safe.
+  void begin(std::int32_t triangle, const Eigen::Vector3d& p_WP) noexcept {
+    contact_.begin(triangle, p_WP);
+    state_ = contact_.state();
+  }
+  /// Ends the contact, if any, and places the free tip at `p_WT` (W, m). Real-time: safe.
+  void set_free(const Eigen::Vector3d& p_WT) noexcept {
+    contact_.set_free(p_WT);
+    state_ = contact_.state();
+  }
   /// Returns the start of the free tip's path (TrackedContact). Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept { return contact_.free_tip(); }
 

@@ -92,6 +92,23 @@ class THIMBLE_EXPORT GodObjectContact {
     state_.p_WP = p_OP_;
   }
 
+  /// Begins contact on a triangle with the proxy at `p_WP` (W, m), whatever the path of the tip:
+  /// for a world of several objects (render/src/world). Real-time: safe.
+  void begin(std::int32_t triangle, const Eigen::Vector3d& p_WP) noexcept {
+    set_free(p_WP);
+    place_ = {.triangle = triangle};
+    state_.touching = true;
+    state_.triangle = triangle;
+    state_.n_W = mesh_->cell(triangle).face.n;
+    state_.p_WP = p_WP;
+  }
+  /// Ends the contact, if any, and places the free tip at `p_WT` (W, m). Real-time: safe.
+  void set_free(const Eigen::Vector3d& p_WT) noexcept {
+    state_ = {};
+    has_before_ = true;
+    p_OP_ = p_WT;
+  }
+
   /// Returns the position of a free tip in the last `update`, m in O; NaN if there was none, or it
   /// touches. Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept {
@@ -105,6 +122,9 @@ class THIMBLE_EXPORT GodObjectContact {
   /// Returns the surface point of the proxy and its derivative by the tip: over a face, along an
   /// edge, zero in a corner (surface_response.h). Real-time: safe.
   ClosestSurfacePoint closest(const Eigen::Vector3d& p_OT) const noexcept;
+
+  /// Returns the part of the surface on which a touching proxy rests. Real-time: safe.
+  const SurfacePlace& place() const noexcept { return place_; }
 
   const GodObjectCounters& counters() const noexcept { return counters_; }
   const ContactMesh& mesh() const noexcept { return *mesh_; }

@@ -90,6 +90,25 @@ class THIMBLE_EXPORT TrackedContact {
     state_.p_WP = p_WT_before_;
   }
 
+  /// Begins contact on a triangle with the proxy at `p_WP` (W, m), whatever the path of the tip:
+  /// for a world of several objects (render/src/world). Real-time: safe.
+  void begin(std::int32_t triangle, const Eigen::Vector3d& p_WP) noexcept {
+    set_free(p_WP);
+    tracker_.start(triangle);
+    follows_ = true;
+    state_.touching = true;
+    state_.triangle = triangle;
+    state_.n_W = mesh_->cell(triangle).face.n;
+    state_.p_WP = p_WP;
+  }
+  /// Ends the contact, if any, and places the free tip at `p_WT` (W, m). Real-time: safe.
+  void set_free(const Eigen::Vector3d& p_WT) noexcept {
+    state_ = {};
+    follows_ = behind_ = false;
+    has_before_ = true;
+    p_WT_before_ = p_WT;
+  }
+
   /// Returns the position of a free tip in the last `update`, m in W, for surfaces that may sweep
   /// over it; NaN if there was none, or it touches. Real-time: safe.
   Eigen::Vector3d free_tip() const noexcept {

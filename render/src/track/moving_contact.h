@@ -110,6 +110,14 @@ class MovingContact {
   auto weights(const Eigen::Vector3d& p_WT) const noexcept { return contact_.weights(p_WT); }
   auto counters() const noexcept { return contact_.counters(); }
   const Contact& contact() const noexcept { return contact_; }
+  /// Returns the wrapped stage, for a caller that follows the tip itself.
+  Contact& contact() noexcept { return contact_; }
+  /// Returns the longest path of a vertex since the last call, m, for such a caller; `update` takes
+  /// it otherwise. Real-time: safe.
+  double take_path() noexcept {
+    path_felt_ = std::exchange(path_to_come_, 0);
+    return path_felt_;
+  }
   const ContactMesh& mesh() const noexcept { return surface_->mesh(); }
   const ContactSearch& search() const noexcept { return surface_->search(); }
 

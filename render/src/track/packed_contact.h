@@ -65,11 +65,19 @@ class THIMBLE_EXPORT PackedContact {
     return felt_;
   }
 
+  /// Begins contact on a triangle with the proxy at `p_WP` (W, m), whatever the path of the tip:
+  /// for a world of several objects (render/src/world). Real-time: safe.
+  void begin_at(std::int32_t triangle, const Eigen::Vector3d& p_WP) noexcept;
+  /// Ends the contact, if any, and places the free tip at `p_WT` (W, m). Real-time: safe.
+  void set_free(const Eigen::Vector3d& p_WT) noexcept;
+
   /// Returns the surface point of the tip at `p_WT` (W, m) (surface_response.h); on the felt plane
   /// if the packed triangle is absent. Precondition: the last `update` was at `p_WT` and touches.
   /// Real-time: safe; some 100 ns.
   ClosestSurfacePoint closest(const Eigen::Vector3d& p_WT) const noexcept;
 
+  /// Returns the number of the active packed triangle. Real-time: safe.
+  std::int32_t active() const noexcept { return active_; }
   const TrackerCounters& counters() const noexcept { return counters_; }
   /// Returns the number of ticks in which a packed triangle was absent.
   std::uint64_t ticks_held() const noexcept { return ticks_held_; }

@@ -84,6 +84,11 @@ class THIMBLE_EXPORT InMemoryContact : public PackedContact<InMemoryStore> {
   /// A copy shares mesh and search, and does not allocate.
   static constexpr bool kCopiesCheaply = true;
 
+  /// See PackedContact::begin_at. Real-time: safe.
+  void begin(std::int32_t triangle, const Eigen::Vector3d& p_WP) noexcept {
+    begin_at(triangle, p_WP);
+  }
+
   const PackedSurface& surface() const noexcept { return store().surface(); }
   const ContactSearch& search() const noexcept { return store().search(); }
 };

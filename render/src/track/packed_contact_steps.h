@@ -256,6 +256,27 @@ void PackedContact<Store>::end() noexcept {
   }
 }
 
+template <PackedStore Store>
+void PackedContact<Store>::begin_at(std::int32_t triangle, const Eigen::Vector3d& p_WP) noexcept {
+  set_free(p_WP);
+  if (!activate(triangle)) return;
+  held_on_ = SurfacePlace::On::kFace;
+  state_.touching = true;
+  state_.n_W = offset_.face();
+  state_.triangle = offset_.source();
+  state_.p_WP = p_WP;
+}
+
+template <PackedStore Store>
+void PackedContact<Store>::set_free(const Eigen::Vector3d& p_WT) noexcept {
+  if (state_.touching) {
+    end();
+    above_ = true;
+  }
+  p_WT_before_ = p_WT;
+  has_before_ = true;
+}
+
 // Finds the triangle through which the path since the last tick enters, and makes it active.
 template <PackedStore Store>
 bool PackedContact<Store>::begin(const Eigen::Vector3d& p_WT) noexcept {

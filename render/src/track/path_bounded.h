@@ -47,7 +47,7 @@ class ProxyFilter {
   /// Receives the tip's position (m, in the frame of the surface) and the tracked contact there.
   /// Returns true if the tracked contact is felt, false if `felt` is. A position that is NaN clears
   /// the path; the next contact then begins without force. Real-time: safe; some ns.
-  bool follow(const Eigen::Vector3d& p_WT, const ContactState& found) noexcept {
+  [[gnu::flatten]] bool follow(const Eigen::Vector3d& p_WT, const ContactState& found) noexcept {
     const Eigen::Vector3d path = p_WT - p_WT_;
     if (!found.touching) {
       lagging_ = false;
@@ -73,6 +73,10 @@ class ProxyFilter {
   /// `follow`. This counts like path of the tip. Real-time: safe.
   void surface_moved(double path) noexcept { surface_path_ += path; }
 
+  /// Scales the distance from the tip to the far end of the spring, for a caller that changes the
+  /// unit in which it is measured. Real-time: safe.
+  void rescale(double factor) noexcept { p_WA_ = p_WT_ + factor * (p_WA_ - p_WT_); }
+
   /// Returns the felt contact of a tick in which `follow` returned false. Real-time: safe.
   const ContactState& felt() const noexcept { return felt_; }
 
@@ -83,8 +87,9 @@ class ProxyFilter {
   // Share of the depth by which a place that did not move may differ by rounding.
   static constexpr double kRounding = 1e-10;  // [chosen: 10^5 roundings of a depth, 1e-9 N at 10 N]
 
-  bool lag(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& path, const Eigen::Vector3d& goal,
-           const ContactState& found) noexcept;
+  // Rare: inlined, it would burden every tick of `follow`.
+  [[gnu::noinline]] bool lag(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& path,
+                             const Eigen::Vector3d& goal, const ContactState& found) noexcept;
   double advance(const Eigen::Vector3d& p_WT, double way_behind) noexcept;
 
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -157,6 +162,8 @@ class PathBounded {
   }
 
   const Contact& contact() const noexcept { return contact_; }
+  /// Returns the wrapped stage, for a caller that bounds the felt contact itself.
+  Contact& contact() noexcept { return contact_; }
   const ProxyFilter& filter() const noexcept { return filter_; }
   decltype(auto) search() const noexcept { return contact_.search(); }
   decltype(auto) mesh() const noexcept requires requires(const Contact& contact) { contact.mesh(); }

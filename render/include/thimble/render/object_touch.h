@@ -2,7 +2,9 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -21,6 +23,7 @@ namespace thimble::render {
 
 class BodyShape;
 class ContactMesh;
+class WorldSolid;
 
 /// Force law of one object of a scene, with any stages. One indirect call per tick runs all of them
 /// (see ObjectTouchAdapter).
@@ -41,6 +44,11 @@ class THIMBLE_EXPORT ObjectTouch {
   /// Returns whether a point (W, m) is inside the object; for checks outside of the servo loop.
   /// Real-time: safe unless the object is paged from disk; one query of its search.
   virtual bool inside(const Eigen::Vector3d& p_W) const noexcept = 0;
+
+  /// Returns the solids of this object that share one proxy with those of the other objects
+  /// (render/src/world). If there are none, as for a force field, the force of `update` is added to
+  /// that of the others. Real-time: never from the servo thread.
+  virtual std::span<WorldSolid* const> solids() noexcept { return {}; }
 
   /// Returns the mesh whose triangles TouchInfo::feature identifies; null if no complete mesh is in
   /// memory.
@@ -122,6 +130,42 @@ class ContactForceLaw {
     return command;
   }
 
+  /// Returns the force of a contact that was found at `state.p_WT`. `source` is the contact stage
+  /// that provides its surface point. Real-time: safe.
+  template <class Source>
+  driver::ForceCommand respond(const driver::DeviceState& state, const ContactState& contact,
+                               const Source& source) noexcept {
+    driver::ForceCommand command;
+    // Written so that a NaN depth means no contact and no force.
+    if (contact.touching && contact.depth > 0) {
+      SurfaceResponse response{.contact = contact};
+      feel_at(state, source, response);
+      command.f_T_W = response.f_T_W;
+      command.touch = {.in_contact = true,
+                       .object = 0,
+                       .feature = contact.triangle,
+                       .depth = response.contact.depth,
+                       .p_WP = response.contact.p_WP,
+                       .n_W = response.contact.n_W,
+                       .hops = contact.hops};
+      touching_ = true;
+    } else if (touching_) {
+      std::apply([](auto&... stage) { (stage.leave(), ...); }, stages_);
+      touching_ = false;
+    }
+    return command;
+  }
+
+  /// Returns the stiffness of the surface's spring, N/m; 0 if no stage is a spring. Real-time:
+  /// safe.
+  double spring_stiffness() const noexcept {
+    const auto of = [](const auto& stage) {
+      if constexpr (requires { stage.spring_stiffness(); }) return stage.spring_stiffness();
+      return 0.0;
+    };
+    return std::apply([&](const auto&... stage) { return (0.0 + ... + of(stage)); }, stages_);
+  }
+
   /// Prefetches the memory for the contact of a tick with about this state (ForceLaw::prepare).
   /// Real-time: safe.
   void prepare(const driver::DeviceState& expected) const noexcept {
@@ -142,6 +186,24 @@ class ContactForceLaw {
   void feel(const driver::DeviceState& state, SurfaceResponse& response) noexcept {
     if constexpr ((ClosestPointStage<Stages> || ...)) {
       const ClosestSurfacePoint closest = closest_point_of(contact_, state.p_WT);
+      const auto run = [&](auto& stage) {
+        if constexpr (requires { stage.touch_at(closest, state, response); }) {
+          stage.touch_at(closest, state, response);
+        } else {
+          stage.touch(state, response);
+        }
+      };
+      std::apply([&](auto&... stage) { (run(stage), ...); }, stages_);
+    } else {
+      std::apply([&](auto&... stage) { (stage.touch(state, response), ...); }, stages_);
+    }
+  }
+
+  template <class Source>
+  void feel_at(const driver::DeviceState& state, const Source& source,
+               SurfaceResponse& response) noexcept {
+    if constexpr ((ClosestPointStage<Stages> || ...)) {
+      const ClosestSurfacePoint closest = closest_point_of(source, state.p_WT);
       const auto run = [&](auto& stage) {
         if constexpr (requires { stage.touch_at(closest, state, response); }) {
           stage.touch_at(closest, state, response);
@@ -185,11 +247,22 @@ class ObjectTouchAdapter final : public ObjectTouch {
   }
 
   void list_settings(LiveSettings& settings) override { list_settings_of(law_, settings); }
+  std::span<WorldSolid* const> solids() noexcept override {
+    return {&solid_pointer_, solid_ ? std::size_t{1} : std::size_t{0}};
+  }
 
   const Law& law() const noexcept { return law_; }
+  Law& law() noexcept { return law_; }  ///< Returns the law, for the solid over it.
+  /// Sets the solid over `law()` that `solids` returns. Real-time: never from the servo thread.
+  void set_solid(std::shared_ptr<WorldSolid> solid) noexcept {
+    solid_ = std::move(solid);
+    solid_pointer_ = solid_.get();
+  }
 
  private:
   Law law_;
+  std::shared_ptr<WorldSolid> solid_;
+  WorldSolid* solid_pointer_ = nullptr;
 };
 
 /// Former name of ContactForceLaw.

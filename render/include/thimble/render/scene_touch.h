@@ -7,32 +7,38 @@
 #include <vector>
 
 #include "thimble/driver/device_state.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/render/object_touch.h"
 
 namespace thimble::render {
 
-/// Force law of a scene of separate, watertight objects. It adds the forces of all objects. The
-/// contact information is that of the object in which the tip is deepest.
-class SceneTouch {
+class ContactWorld;
+
+/// Force law of a scene. The tip feels the union of all solids of its objects (render/src/world);
+/// the forces of the other objects, such as fields, are added. The contact information is that of
+/// the object in which the tip is deepest.
+class THIMBLE_EXPORT SceneTouch {
  public:
   /// Constructs the law from the objects in the scene's order. TouchInfo::object is the index of an
   /// object in this order, from 0.
-  explicit SceneTouch(std::vector<std::unique_ptr<ObjectTouch>> objects)
-      : objects_(std::move(objects)) {}
+  explicit SceneTouch(std::vector<std::unique_ptr<ObjectTouch>> objects);
+  SceneTouch(SceneTouch&&) noexcept;             ///< Moves all objects.
+  SceneTouch& operator=(SceneTouch&&) noexcept;  ///< Moves all objects.
+  ~SceneTouch();
 
   /// Returns the force of the scene on the hand. Real-time: safe.
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
     driver::ForceCommand sum;
-    for (std::size_t i = 0; i < objects_.size(); ++i) {
-      const driver::ForceCommand one = objects_[i]->update(state);
+    for (const Felt& felt : felt_) {
+      const driver::ForceCommand one = felt.touch->update(state);
       sum.f_T_W += one.f_T_W;
       sum.stored += one.stored;
       sum.f_program_W += one.f_program_W;
       // A contact of depth 0, over the groove of a texture, counts too.
       if (one.touch.in_contact && !(sum.touch.in_contact && one.touch.depth <= sum.touch.depth)) {
         sum.touch = one.touch;
-        sum.touch.object = static_cast<std::int16_t>(i);
+        sum.touch.object = static_cast<std::int16_t>(felt.object + one.touch.object);
       }
     }
     return sum;
@@ -41,7 +47,7 @@ class SceneTouch {
   /// Prefetches the memory of all objects that a tick with about the state `expected` will read
   /// (ForceLaw::prepare). Real-time: safe.
   void prepare(const driver::DeviceState& expected) const noexcept {
-    for (const auto& object : objects_) object->prepare(expected);
+    for (const Felt& felt : felt_) felt.touch->prepare(expected);
   }
 
   /// Returns whether a point (W, m) is inside an object that has neither moved nor deformed. For
@@ -83,9 +89,21 @@ class SceneTouch {
   const ObjectTouch& object(std::size_t i) const noexcept { return *objects_[i]; }
   /// Overload for a scene that is not const.
   ObjectTouch& object(std::size_t i) noexcept { return *objects_[i]; }
+  /// Returns the world of the scene's solids; null if they are fewer than two. Real-time: safe.
+  const ContactWorld* world() const noexcept;
 
  private:
+  class WorldTouch;
+  // What runs in each tick: an object of its own number, whose touch has the number 0, or the
+  // world, whose touch has the number of the object.
+  struct Felt {
+    ObjectTouch* touch = nullptr;
+    std::int16_t object = 0;
+  };
+
   std::vector<std::unique_ptr<ObjectTouch>> objects_;
+  std::unique_ptr<WorldTouch> world_;
+  std::vector<Felt> felt_;
 };
 
 }  // namespace thimble::render

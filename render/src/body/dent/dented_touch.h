@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "body/dent/bendable_polygon.h"
 #include "body/dent/body_pull.h"
+#include "body/dent/dented_solid.h"
 #include "thimble/render/object_touch.h"
 
 namespace thimble::render {
@@ -22,11 +24,19 @@ class DentedTouch final : public ObjectTouch {
   DentedTouch(std::unique_ptr<ObjectTouch> inner, BendablePolygon dent)
       : inner_(std::move(inner)),
         dent_(std::move(dent)),
-        pull_(dent_.motion().settings().pull, dent_.motion().settings().step) {}
+        pull_(dent_.motion().settings().pull, dent_.motion().settings().step) {
+    if (const auto solids = inner_->solids(); solids.size() == 1) {
+      solid_.emplace(*this, *solids.front());
+      solid_pointer_ = &*solid_;
+    }
+  }
 
   /// Returns the force of the object, plus the share of the pull given by the settings, and
   /// advances the dent by one tick.
   driver::ForceCommand update(const driver::DeviceState& state) noexcept override;
+  std::span<WorldSolid* const> solids() noexcept override {
+    return {&solid_pointer_, solid_ ? std::size_t{1} : std::size_t{0}};
+  }
   bool inside(const Eigen::Vector3d& p_W) const noexcept override { return inner_->inside(p_W); }
   const ContactMesh* mesh() const noexcept override { return &dent_.mesh(); }
   bool is_static() const noexcept override { return inner_->is_static(); }
@@ -52,9 +62,18 @@ class DentedTouch final : public ObjectTouch {
   const BodyPull& pull() const noexcept { return pull_; }  ///< Returns the pull of the last tick.
 
  private:
+  friend class DentedSolid<DentedTouch>;
+
+  // Lets the dent follow the contact of a tick and adds its pull. Returns false without contact.
+  bool follow(const driver::DeviceState& state, driver::ForceCommand& command) noexcept;
+  // Advances the dent in a tick without contact.
+  void rest() noexcept;
+
   std::unique_ptr<ObjectTouch> inner_;
   BendablePolygon dent_;
   BodyPull pull_;
+  std::optional<DentedSolid<DentedTouch>> solid_;
+  WorldSolid* solid_pointer_ = nullptr;
 };
 
 }  // namespace thimble::render

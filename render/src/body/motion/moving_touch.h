@@ -4,14 +4,17 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "body/motion/body_coupling.h"
 #include "body/motion/body_frame.h"
+#include "body/motion/moving_solid.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/render/body_pose.h"
@@ -64,7 +67,12 @@ class MovingTouch final : public ObjectTouch {
   /// Wraps an object's force law, made for the mesh at its first place. Real-time: never from the
   /// servo thread.
   MovingTouch(std::unique_ptr<ObjectTouch> surface, Motion motion, const BodyCoupling& coupling)
-      : surface_(std::move(surface)), motion_(std::move(motion)), coupling_(coupling) {}
+      : surface_(std::move(surface)), motion_(std::move(motion)), coupling_(coupling) {
+    if (const auto solids = surface_->solids(); solids.size() == 1) {
+      solid_.emplace(*this, *solids.front());
+      solid_pointer_ = &*solid_;
+    }
+  }
 
   driver::ForceCommand update(const driver::DeviceState& state) noexcept override {
     const auto [R_WB, p_WB] = motion_.frame_after(coupling_.step);
@@ -85,6 +93,9 @@ class MovingTouch final : public ObjectTouch {
 
   bool inside(const Eigen::Vector3d& p_W) const noexcept override {
     return surface_->inside(motion_.R_WB().transpose() * (p_W - motion_.p_WB()));
+  }
+  std::span<WorldSolid* const> solids() noexcept override {
+    return {&solid_pointer_, solid_ ? std::size_t{1} : std::size_t{0}};
   }
   bool is_static() const noexcept override { return false; }
   bool stands_still() const noexcept override { return is_static(); }  // deprecated
@@ -122,6 +133,21 @@ class MovingTouch final : public ObjectTouch {
   const ObjectTouch& surface() const noexcept { return *surface_; }
 
  private:
+  friend class MovingSolid<MovingTouch>;
+
+  // The parts of `update`, for a world of several solids.
+  BodyFrame frame_of_tick() const noexcept { return motion_.frame_after(coupling_.step); }
+  Eigen::Vector3d velocity_in_B(const BodyFrame& frame,
+                                const driver::DeviceState& state) const noexcept {
+    return frame.R_WB.transpose() * (state.v_WT - motion_.velocity_at(state.p_WT));
+  }
+  double end_tick(bool touching, const Eigen::Vector3d& p_B) noexcept {
+    count_lost(touching, p_B);
+    const double stored = motion_.energy();
+    motion_.step(coupling_.step);
+    return stored;
+  }
+
   // Returns the hand's share of the surface's force and pushes the body with the opposite.
   Eigen::Vector3d share(const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_WT) noexcept {
     const double size = f_W.norm();
@@ -145,6 +171,8 @@ class MovingTouch final : public ObjectTouch {
   BodyCoupling coupling_;
   bool was_touching_ = false;
   std::uint64_t lost_ = 0;
+  std::optional<MovingSolid<MovingTouch>> solid_;
+  WorldSolid* solid_pointer_ = nullptr;
 };
 
 }  // namespace thimble::render

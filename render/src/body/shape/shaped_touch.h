@@ -2,12 +2,16 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "body/shape/body_shape.h"
+#include "body/shape/shaped_solid.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/render/object_touch.h"
@@ -28,13 +32,11 @@ class ShapedTouch final : public ObjectTouch {
 
   driver::ForceCommand update(const driver::DeviceState& state) noexcept override {
     driver::ForceCommand command = stages_(state);
-    if (const SnapShape* snap = shape_.snap()) command.stored = snap->energy();
-    if (was_touching_ && !command.touch.in_contact && inside(state.p_WT)) ++lost_;
-    was_touching_ = command.touch.in_contact;
-    const auto moves = shape_.follow(stages_.contact().mesh(), command.touch);
-    if (!moves.empty()) stages_.contact().move_vertices(moves);
-    if (shape_.refines()) refine();
+    command.stored = end_tick(command.touch, command.touch.in_contact, state.p_WT);
     return command;
+  }
+  std::span<WorldSolid* const> solids() noexcept override {
+    return {&solid_pointer_, solid_ ? std::size_t{1} : std::size_t{0}};
   }
   bool inside(const Eigen::Vector3d& p_W) const noexcept override {
     return stages_.contact().search().inside(p_W);
@@ -63,9 +65,30 @@ class ShapedTouch final : public ObjectTouch {
   void list_settings(LiveSettings& settings) override { list_settings_of(stages_, settings); }
 
   const Stages& stages() const noexcept { return stages_; }
+  Stages& stages() noexcept { return stages_; }  ///< Returns the stages, for the solid over them.
+  /// Sets the solid over `stages()` that `solids` returns, with the giving way of this object.
+  /// Real-time: never from the servo thread.
+  void set_solid(std::unique_ptr<WorldSolid> surface) {
+    solid_.emplace(*this, std::move(surface));
+    solid_pointer_ = &*solid_;
+  }
   const BodyShape* shape() const noexcept override { return &shape_; }
 
  private:
+  friend class ShapedSolid<ShapedTouch>;
+
+  // Lets the surface give way after a tick. Returns the energy in its storages, J.
+  double end_tick(const driver::TouchInfo& touch, bool touching,
+                  const Eigen::Vector3d& p_W) noexcept {
+    double stored = 0;
+    if (const SnapShape* snap = shape_.snap()) stored = snap->energy();
+    if (was_touching_ && !touching && inside(p_W)) ++lost_;
+    was_touching_ = touching;
+    const auto moves = shape_.follow(stages_.contact().mesh(), touch);
+    if (!moves.empty()) stages_.contact().move_vertices(moves);
+    if (shape_.refines()) refine();
+    return stored;
+  }
   // Splits edges after the moves, so that the surface agrees with the shape's state.
   void refine() noexcept {
     auto& contact = stages_.contact();
@@ -78,6 +101,8 @@ class ShapedTouch final : public ObjectTouch {
   BodyShape shape_;
   bool was_touching_ = false;
   std::uint64_t lost_ = 0;
+  std::optional<ShapedSolid<ShapedTouch>> solid_;
+  WorldSolid* solid_pointer_ = nullptr;
 };
 
 }  // namespace thimble::render

@@ -28,6 +28,8 @@ class THIMBLE_EXPORT AnyStage {
   [[deprecated("renamed to needs_closest_point")]] virtual bool needs_foot() const noexcept {
     return false;
   }
+  /// Returns the stiffness of the surface's spring, N/m; 0 for other stages. Real-time: safe.
+  virtual double spring_stiffness() const noexcept { return 0; }
   /// See ClosestPointStage; other stages run `touch`. Real-time: safe.
   virtual void touch_at(const ClosestSurfacePoint&, const driver::DeviceState& state,
                         SurfaceResponse& response) noexcept {
@@ -56,6 +58,10 @@ class AnyStageOf final : public AnyStage {
   void leave() noexcept override { stage_.leave(); }
   bool needs_closest_point() const noexcept override { return ClosestPointStage<Stage>; }
   bool needs_foot() const noexcept override { return ClosestPointStage<Stage>; }  // deprecated
+  double spring_stiffness() const noexcept override {
+    if constexpr (requires { stage_.spring_stiffness(); }) return stage_.spring_stiffness();
+    return 0;
+  }
   void touch_at(const ClosestSurfacePoint& closest, const driver::DeviceState& state,
                 SurfaceResponse& response) noexcept override {
     if constexpr (ClosestPointStage<Stage>) {
@@ -89,6 +95,13 @@ class StageList {
   }
   void list_settings(LiveSettings& settings) {
     for (const auto& stage : stages_) stage->list_settings(settings);
+  }
+
+  /// Returns the stiffness of the surface's spring, N/m. Real-time: safe.
+  double spring_stiffness() const noexcept {
+    double stiffness = 0;
+    for (const auto& stage : stages_) stiffness += stage->spring_stiffness();
+    return stiffness;
   }
 
   /// Returns whether any stage is a ClosestPointStage; if so, use a ClosestPointStageList.

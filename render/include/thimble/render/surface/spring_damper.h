@@ -31,6 +31,7 @@ struct SpringDamper {
     response.f_T_W += force(response.contact, state);
   }
   void leave() const noexcept {}
+  double spring_stiffness() const noexcept { return stiffness; }  ///< Returns `stiffness`.
 
   /// Adds stiffness and damping. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings) {
