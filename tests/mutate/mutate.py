@@ -67,6 +67,8 @@ def main():
     tree = BuiltTree(options.root, options.work / "source", plan)
     uncompilable = tree.build_without(chosen)
     print(f"{len(chosen)} mutants built, {uncompilable} do not compile", flush=True)
+    # Scenes with a scanned mesh search beside their own sources, which are a copy here.
+    os.environ.setdefault("THIMBLE_MESHES", str(options.root / "build/meshes"))
     trials = Trials(tree.build, plan["programs"], options.jobs)
     tests = trials.measure()
     print(f"{len(tests)} tests take {sum(test.seconds for test in tests):.0f} s", flush=True)

@@ -339,7 +339,9 @@ TEST(Recording, EndsWhereTheFileCannotGrow) {
     std::signal(SIGXFSZ, SIG_IGN);
     auto file = session::RecordingFile::create(path, kInfo, {.rows_max = 1'000'000, .room = 100});
     if (!file) _exit(1);
-    const rlimit full{std::filesystem::file_size(path), RLIM_INFINITY};
+    rlimit full{};
+    if (getrlimit(RLIMIT_FSIZE, &full) != 0) _exit(2);
+    full.rlim_cur = std::filesystem::file_size(path);
     if (setrlimit(RLIMIT_FSIZE, &full) != 0) _exit(2);
     std::vector<TickRecord> ticks;
     for (std::uint64_t i = 0; i < 150; ++i) ticks.push_back(tick_number(i));
