@@ -23,7 +23,7 @@ constexpr int kRoundsMax = 24;
 
 // Maximum number of times that active solids are followed until they agree on where the tip is
 // pushed. Faces take 1 or 2. [chosen]
-constexpr int kAgreeMax = 6;
+constexpr int kAgreeMax = 12;
 
 // Longest way out of a notch between faces, in lifts: 2 degrees. [chosen]
 constexpr double kNotchMax = 64;
@@ -38,6 +38,36 @@ constexpr double kAskAgain = 0.125;
 
 // Number of solids in the neighbourhood up to which a larger one is worthwhile. [chosen]
 constexpr std::size_t kFew = 12;
+
+// Guesses where the rounds of a tick lead. In a groove between curved surfaces, each round leaves
+// the same share r of the way along the groove, so three rounds tell the rest (Aitken's method).
+class Extrapolation {
+ public:
+  Vector3d ahead{0, 0, 0};  // guess of the way from the last round to the end
+
+  void add(const Vector3d& d) noexcept {
+    ahead.setZero();
+    if (known_ == 2) {
+      const Vector3d first = before_[1] - before_[0], second = d - before_[1];
+      const double share = second.dot(first) / first.squaredNorm();
+      // Written so that NaN adds nothing.
+      if (share > 0 && share < kShareMax) {
+        ahead = share / (1 - share) * second;
+        known_ = 0;
+        return;
+      }
+      before_[0] = before_[1];
+      known_ = 1;
+    }
+    before_[known_++] = d;
+  }
+
+ private:
+  static constexpr double kShareMax = 0.9;  // [chosen]
+
+  std::array<Vector3d, 2> before_;
+  std::size_t known_ = 0;
+};
 
 std::vector<SolidBox> boxes_of(const std::vector<ContactWorld::Member>& members) {
   std::vector<SolidBox> boxes;
@@ -214,8 +244,14 @@ void ContactWorld::move(const Vector3d& p_WT) noexcept {
   reached_ = p_WQ_;
   for (std::size_t i = 0; i < active_count_; ++i) active_[i].tried = false;
   int agreed = 0;
+  Extrapolation rounds;
+  std::array<std::pair<std::int32_t, std::int32_t>, kActiveMax> held;  // solid, triangle
+  const std::size_t held_count = active_count_;
+  for (std::size_t i = 0; i < held_count; ++i) {
+    held[i] = {active_[i].solid, active_[i].found.triangle};
+  }
   for (int round = 0; round < kRoundsMax; ++round) {
-    const bool ended = active_count_ > 0 && follow_active(p_WT);
+    const bool ended = active_count_ > 0 && follow_active(p_WT, rounds.ahead);
     if (ended) {
       // Over the extended faces of those that have let go.
       if (advance(lifted(p_WT))) {
@@ -224,14 +260,19 @@ void ContactWorld::move(const Vector3d& p_WT) noexcept {
       } else {
         drop_ended();
       }
+      rounds = {};
       continue;
     }
     if (active_count_ == 0) {
       push_ = {};
     } else {
       push_ = push(p_WT);
-      if (active_count_ > 1 && !agrees(p_WT, push_) && ++agreed < kAgreeMax) continue;
+      if (active_count_ > 1 && !agrees(p_WT, push_) && ++agreed < kAgreeMax) {
+        rounds.add(push_.out.d);
+        continue;
+      }
     }
+    rounds = {};
     if (advance(active_count_ == 0 ? p_WT : lifted(p_WT))) {
       agreed = 0;
       continue;
@@ -240,8 +281,13 @@ void ContactWorld::move(const Vector3d& p_WT) noexcept {
     if (!ghosts_.empty()) forget_left();
     return;
   }
+  // On its way the proxy may have cut through a curved solid that is active. It stays where it was,
+  // with the solids that held it there.
   ++counters_.unsettled;
-  p_WQ_ = reached_;
+  reached_ = p_WQ_;
+  active_count_ = 0;
+  for (std::size_t i = 0; i < held_count; ++i) begin(held[i].first, held[i].second, p_WQ_);
+  reached_ = p_WQ_;
   push_ = push(p_WT);
 }
 
@@ -325,14 +371,14 @@ double ContactWorld::nearer(const Vector3d& p_WT, const Push& push, std::size_t 
 }
 
 // Follows each active solid at the tip as the others push it. Returns whether one has let go.
-bool ContactWorld::follow_active(const Vector3d& p_WT) noexcept {
+bool ContactWorld::follow_active(const Vector3d& p_WT, const Vector3d& ahead) noexcept {
   Push push;
   if (active_count_ > 1) push = this->push(p_WT);
   bool ended = false;
   for (std::size_t i = 0; i < active_count_; ++i) {
     Active& active = active_[i];
     active.at_W = shifted(p_WT, push, i, lift_);
-    if (active_count_ > 1) active.at_W += nearer(p_WT, push, i) * push.n[i];
+    if (active_count_ > 1) active.at_W += nearer(p_WT, push, i) * push.n[i] + ahead;
     const ContactState found = follow_one(active);
     active.fresh = false;
     // Written so that NaN lets go.
