@@ -257,6 +257,8 @@ void ContactWorld::move(const Vector3d& p_WT) noexcept {
       if (advance(lifted(p_WT))) {
         // Stopped before the end of those faces.
         revive_ended();
+      } else if (inside_ended()) {
+        break;
       } else {
         drop_ended();
       }
@@ -282,7 +284,7 @@ void ContactWorld::move(const Vector3d& p_WT) noexcept {
     return;
   }
   // On its way the proxy may have cut through a curved solid that is active. It stays where it was,
-  // with the solids that held it there.
+  // with the solids that held it there; the next tick tries again.
   ++counters_.unsettled;
   reached_ = p_WQ_;
   active_count_ = 0;
@@ -459,6 +461,16 @@ void ContactWorld::revive_ended() noexcept {
     if (active_[i].ended) solid(active_[i].solid).revive(reached_);
     active_[i].ended = false;
   }
+}
+
+// Returns whether the proxy has cut into a curved solid that now lets go, so that its surface would
+// not be met any more. Only where the tracker's surface is that of the solid.
+bool ContactWorld::inside_ended() const noexcept {
+  for (std::size_t i = 0; i < active_count_; ++i) {
+    const WorldSolid& one = solid(active_[i].solid);
+    if (active_[i].ended && one.follows_closely() && one.inside(reached_)) return true;
+  }
+  return false;
 }
 
 void ContactWorld::drop_ended() noexcept {

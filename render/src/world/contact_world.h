@@ -106,6 +106,7 @@ class THIMBLE_EXPORT ContactWorld {
   double nearer(const Eigen::Vector3d& p_WT, const Push& push, std::size_t i) const noexcept;
   bool agrees(const Eigen::Vector3d& p_WT, const Push& push) const noexcept;
   void revive_ended() noexcept;
+  bool inside_ended() const noexcept;
   void drop_ended() noexcept;
   Planes planes() const noexcept;
   Push push(const Eigen::Vector3d& p_WT) const noexcept;
