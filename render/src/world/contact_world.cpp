@@ -211,6 +211,14 @@ ContactWorld::Planes ContactWorld::planes() const noexcept {
 
 // Returns the shortest way out of all planes.
 ContactWorld::Push ContactWorld::push(const Vector3d& p_WT) const noexcept {
+  if (active_count_ == 1 && active_[0].face_count == 0) {
+    const ActivePlane& plane = active_[0].plane;
+    Push push;
+    push.out.lambda[0] = push.lambda[0] = std::max(0.0, plane.depth(p_WT));
+    push.out.d = push.way[0] = push.lambda[0] * plane.n;
+    push.n[0] = plane.n;
+    return push;
+  }
   const Planes list = planes();
   Push push;
   push.out = push_out(list.all(), p_WT, 0, lift_ / 4);
@@ -235,6 +243,10 @@ ContactWorld::Push ContactWorld::push(const Vector3d& p_WT) const noexcept {
 
 // Returns the point closest to the tip that is in front of all planes by the lift.
 Vector3d ContactWorld::lifted(const Vector3d& p_WT) const noexcept {
+  if (active_count_ == 1 && active_[0].face_count == 0) {
+    const ActivePlane& plane = active_[0].plane;
+    return p_WT + std::max(0.0, plane.depth(p_WT) + lift_) * plane.n;
+  }
   const Planes list = planes();
   return p_WT + push_out(list.all(), p_WT, lift_, lift_ / 4).d;
 }
