@@ -40,7 +40,7 @@ constexpr double kAskAgain = 0.125;
 constexpr std::size_t kFew = 12;
 
 // Guesses where the rounds of a tick lead. In a groove between curved surfaces, each round leaves
-// the same share r of the way along the groove, so three rounds tell the rest (Aitken's method).
+// the same share r of the way along the groove, so three rounds give the rest (Aitken's method).
 class Extrapolation {
  public:
   Vector3d ahead{0, 0, 0};  // guess of the way from the last round to the end

@@ -316,7 +316,8 @@ std::string describe(const TouchingParts& parts) {
                                         parts.pairs, parts.pairs == 1 ? "" : "s");
   return fmt::format(
       "{} overlap or lie flush against each other (first: triangles {} and {}, near ({:.4g}, "
-      "{:.4g}, {:.4g})). The tip feels their union. Join them into one body in a mesh editor if the "
+      "{:.4g}, {:.4g})). The tip feels their union. Join them into one body in a mesh editor if "
+      "the "
       "object dents or changes shape.",
       pairs, parts.triangles[0], parts.triangles[1], parts.place.x(), parts.place.y(),
       parts.place.z());
