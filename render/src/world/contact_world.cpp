@@ -542,9 +542,18 @@ void ContactWorld::leave_others(std::span<const std::int32_t> felt) noexcept {
 }
 
 driver::ForceCommand ContactWorld::feel_one(const driver::DeviceState& state) noexcept {
-  const Active& active = active_[0];
+  Active& active = active_[0];
   WorldSolid& one = solid(active.solid);
   const double stiffness = one.stiffness();
+  // A setting that is turned acts at once; the path of the tip bounds only what the tip causes.
+  if (stiffness != active.stiffness && active.stiffness > 0 && stiffness > 0) {
+    if (stiffness_ref_ == active.stiffness) {
+      stiffness_ref_ = stiffness;
+    } else {
+      filter_.rescale(stiffness / active.stiffness);
+    }
+  }
+  active.stiffness = stiffness;
   if (stiffness > stiffness_ref_) {
     if (stiffness_ref_ > 0) filter_.rescale(stiffness_ref_ / stiffness);
     stiffness_ref_ = stiffness;
@@ -575,6 +584,8 @@ driver::ForceCommand ContactWorld::feel_several(const driver::DeviceState& state
   std::array<std::int32_t, kActiveMax> felt{};
   std::size_t felt_count = 0;
   double stiffest = 0, lambda_sum = 0, squares = 0, weighted = 0;
+  std::array<double, kPlanesMax> plane_stiffness_before{};
+  bool turned = false;
   for (std::size_t i = 0; i < active_count_; ++i) {
     const double lambda = push_.lambda[i];
     if (!(lambda > 0)) continue;
@@ -586,6 +597,9 @@ driver::ForceCommand ContactWorld::feel_several(const driver::DeviceState& state
   for (std::size_t k = 0; k < list.count; ++k) {
     const double squared = push_.out.lambda[k] * push_.out.lambda[k];
     plane_stiffness[k] = stiffness[list.owner[k]];
+    const double before = active_[list.owner[k]].stiffness;
+    plane_stiffness_before[k] = before > 0 ? before : plane_stiffness[k];
+    turned = turned || plane_stiffness_before[k] != plane_stiffness[k];
     squares += squared;
     weighted += squared * plane_stiffness[k];
   }
@@ -595,6 +609,16 @@ driver::ForceCommand ContactWorld::feel_several(const driver::DeviceState& state
   }
   const SharedForce shared =
       shared_force_of(list.all(), std::span(plane_stiffness).first(list.count), push_.out);
+  if (turned) {
+    // As in feel_one.
+    const double before =
+        shared_force_of(list.all(), std::span(plane_stiffness_before).first(list.count), push_.out)
+            .f_W.norm();
+    if (before > 0) filter_.rescale(shared.f_W.norm() / before);
+  }
+  for (std::size_t i = 0; i < active_count_; ++i) {
+    if (stiffness[i] > 0) active_[i].stiffness = stiffness[i];
+  }
   ContactState goal{.touching = true, .triangle = active_[0].found.triangle};
   goal.n_W = active_[0].found.n_W;
   const double size = shared.f_W.norm();
