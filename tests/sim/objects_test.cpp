@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "figures/lost_contacts.h"
 #include "thimble/render/scene_touch.h"
@@ -37,6 +40,48 @@ TEST(SeveralObjects, EachIsTouchedWithItsOwnStiffness) {
   EXPECT_GT(ticks_on[0], 300u);
   EXPECT_GT(ticks_on[1], 300u);
   EXPECT_EQ(session::count_lost_contacts(session.ticks(), session.touch()), 0u);
+}
+
+/// Runs a scene of tests/data/scenes and returns its ticks.
+std::vector<driver::TickRecord> ticks_of(const std::string& scene) {
+  const auto opened = session::Session::open(
+      std::filesystem::path(THIMBLE_SOURCE_DIR) / "tests/data/scenes" / (scene + ".yaml"), {});
+  EXPECT_TRUE(opened) << opened.error().message;
+  if (!opened) return {};
+  session::Session& session = **opened;
+  EXPECT_EQ(session.run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
+  EXPECT_EQ(session::count_lost_contacts(session.ticks(), session.touch()), 0u);
+  return {session.ticks().begin(), session.ticks().end()};
+}
+
+TEST(SeveralObjects, ASeamOfFlushBoxesIsNotFelt) {
+  int left = 0, right = 0;
+  for (const auto& row : ticks_of("flush_boxes")) {
+    if (!row.in_contact) continue;
+    ++(row.object == 0 ? left : right);
+    // The tops are at z = 0, so the depth is that of a single box.
+    ASSERT_NEAR(row.depth, std::max(0.0, -row.p_WT[2]), 1e-9) << "tick " << row.tick;
+    ASSERT_EQ(row.n_W[2], 1) << "tick " << row.tick;
+  }
+  EXPECT_GT(left, 300);
+  EXPECT_GT(right, 300);
+}
+
+TEST(SeveralObjects, ABlockOnATableStopsATipThatPressesTheTable) {
+  const auto ticks = ticks_of("block_on_table");
+  ASSERT_FALSE(ticks.empty());
+  const auto& last = ticks.back();
+  // The side of the block is at x = 0.
+  EXPECT_GT(last.p_WT[0], 0.002);
+  EXPECT_NEAR(last.f_wanted_W[0], -800 * last.p_WT[0], 0.01);
+  EXPECT_NEAR(last.f_wanted_W[2], -800 * last.p_WT[2], 0.01);
+}
+
+TEST(SeveralObjects, OverlappingPartsOfAMeshAreFeltAsTheirUnion) {
+  const auto ticks = ticks_of("overlapping_parts");
+  ASSERT_FALSE(ticks.empty());
+  // The side of the post is at x = 0; it overlaps the plate that the tip presses.
+  EXPECT_LT(ticks.back().f_wanted_W[0], -1);
 }
 
 }  // namespace

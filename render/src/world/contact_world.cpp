@@ -23,7 +23,7 @@ constexpr int kRoundsMax = 24;
 
 // Maximum number of times that active solids are followed until they agree on where the tip is
 // pushed. Faces take 1 or 2. [chosen]
-constexpr int kAgreeMax = 6;
+constexpr int kAgreeMax = 12;
 
 // Longest way out of a notch between faces, in lifts: 2 degrees. [chosen]
 constexpr double kNotchMax = 64;
@@ -38,6 +38,36 @@ constexpr double kAskAgain = 0.125;
 
 // Number of solids in the neighbourhood up to which a larger one is worthwhile. [chosen]
 constexpr std::size_t kFew = 12;
+
+// Guesses where the rounds of a tick lead. In a groove between curved surfaces, each round leaves
+// the same share r of the way along the groove, so three rounds give the rest (Aitken's method).
+class Extrapolation {
+ public:
+  Vector3d ahead{0, 0, 0};  // guess of the way from the last round to the end
+
+  void add(const Vector3d& d) noexcept {
+    ahead.setZero();
+    if (known_ == 2) {
+      const Vector3d first = before_[1] - before_[0], second = d - before_[1];
+      const double share = second.dot(first) / first.squaredNorm();
+      // Written so that NaN adds nothing.
+      if (share > 0 && share < kShareMax) {
+        ahead = share / (1 - share) * second;
+        known_ = 0;
+        return;
+      }
+      before_[0] = before_[1];
+      known_ = 1;
+    }
+    before_[known_++] = d;
+  }
+
+ private:
+  static constexpr double kShareMax = 0.9;  // [chosen]
+
+  std::array<Vector3d, 2> before_;
+  std::size_t known_ = 0;
+};
 
 std::vector<SolidBox> boxes_of(const std::vector<ContactWorld::Member>& members) {
   std::vector<SolidBox> boxes;
@@ -181,6 +211,14 @@ ContactWorld::Planes ContactWorld::planes() const noexcept {
 
 // Returns the shortest way out of all planes.
 ContactWorld::Push ContactWorld::push(const Vector3d& p_WT) const noexcept {
+  if (active_count_ == 1 && active_[0].face_count == 0) {
+    const ActivePlane& plane = active_[0].plane;
+    Push push;
+    push.out.lambda[0] = push.lambda[0] = std::max(0.0, plane.depth(p_WT));
+    push.out.d = push.way[0] = push.lambda[0] * plane.n;
+    push.n[0] = plane.n;
+    return push;
+  }
   const Planes list = planes();
   Push push;
   push.out = push_out(list.all(), p_WT, 0, lift_ / 4);
@@ -205,6 +243,10 @@ ContactWorld::Push ContactWorld::push(const Vector3d& p_WT) const noexcept {
 
 // Returns the point closest to the tip that is in front of all planes by the lift.
 Vector3d ContactWorld::lifted(const Vector3d& p_WT) const noexcept {
+  if (active_count_ == 1 && active_[0].face_count == 0) {
+    const ActivePlane& plane = active_[0].plane;
+    return p_WT + std::max(0.0, plane.depth(p_WT) + lift_) * plane.n;
+  }
   const Planes list = planes();
   return p_WT + push_out(list.all(), p_WT, lift_, lift_ / 4).d;
 }
@@ -214,24 +256,37 @@ void ContactWorld::move(const Vector3d& p_WT) noexcept {
   reached_ = p_WQ_;
   for (std::size_t i = 0; i < active_count_; ++i) active_[i].tried = false;
   int agreed = 0;
+  Extrapolation rounds;
+  std::array<std::pair<std::int32_t, std::int32_t>, kActiveMax> held;  // solid, triangle
+  const std::size_t held_count = active_count_;
+  for (std::size_t i = 0; i < held_count; ++i) {
+    held[i] = {active_[i].solid, active_[i].found.triangle};
+  }
   for (int round = 0; round < kRoundsMax; ++round) {
-    const bool ended = active_count_ > 0 && follow_active(p_WT);
+    const bool ended = active_count_ > 0 && follow_active(p_WT, rounds.ahead);
     if (ended) {
       // Over the extended faces of those that have let go.
       if (advance(lifted(p_WT))) {
         // Stopped before the end of those faces.
         revive_ended();
+      } else if (inside_ended()) {
+        break;
       } else {
         drop_ended();
       }
+      rounds = {};
       continue;
     }
     if (active_count_ == 0) {
       push_ = {};
     } else {
       push_ = push(p_WT);
-      if (active_count_ > 1 && !agrees(p_WT, push_) && ++agreed < kAgreeMax) continue;
+      if (active_count_ > 1 && !agrees(p_WT, push_) && ++agreed < kAgreeMax) {
+        rounds.add(push_.out.d);
+        continue;
+      }
     }
+    rounds = {};
     if (advance(active_count_ == 0 ? p_WT : lifted(p_WT))) {
       agreed = 0;
       continue;
@@ -240,8 +295,13 @@ void ContactWorld::move(const Vector3d& p_WT) noexcept {
     if (!ghosts_.empty()) forget_left();
     return;
   }
+  // On its way the proxy may have cut through a curved solid that is active. It stays where it was,
+  // with the solids that held it there; the next tick tries again.
   ++counters_.unsettled;
-  p_WQ_ = reached_;
+  reached_ = p_WQ_;
+  active_count_ = 0;
+  for (std::size_t i = 0; i < held_count; ++i) begin(held[i].first, held[i].second, p_WQ_);
+  reached_ = p_WQ_;
   push_ = push(p_WT);
 }
 
@@ -325,14 +385,14 @@ double ContactWorld::nearer(const Vector3d& p_WT, const Push& push, std::size_t 
 }
 
 // Follows each active solid at the tip as the others push it. Returns whether one has let go.
-bool ContactWorld::follow_active(const Vector3d& p_WT) noexcept {
+bool ContactWorld::follow_active(const Vector3d& p_WT, const Vector3d& ahead) noexcept {
   Push push;
   if (active_count_ > 1) push = this->push(p_WT);
   bool ended = false;
   for (std::size_t i = 0; i < active_count_; ++i) {
     Active& active = active_[i];
     active.at_W = shifted(p_WT, push, i, lift_);
-    if (active_count_ > 1) active.at_W += nearer(p_WT, push, i) * push.n[i];
+    if (active_count_ > 1) active.at_W += nearer(p_WT, push, i) * push.n[i] + ahead;
     const ContactState found = follow_one(active);
     active.fresh = false;
     // Written so that NaN lets go.
@@ -415,6 +475,16 @@ void ContactWorld::revive_ended() noexcept {
   }
 }
 
+// Returns whether the proxy has cut into a curved solid that now lets go, so that its surface would
+// not be met any more. Only where the tracker's surface is that of the solid.
+bool ContactWorld::inside_ended() const noexcept {
+  for (std::size_t i = 0; i < active_count_; ++i) {
+    const WorldSolid& one = solid(active_[i].solid);
+    if (active_[i].ended && one.follows_closely() && one.inside(reached_)) return true;
+  }
+  return false;
+}
+
 void ContactWorld::drop_ended() noexcept {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < active_count_; ++i) {
@@ -472,9 +542,18 @@ void ContactWorld::leave_others(std::span<const std::int32_t> felt) noexcept {
 }
 
 driver::ForceCommand ContactWorld::feel_one(const driver::DeviceState& state) noexcept {
-  const Active& active = active_[0];
+  Active& active = active_[0];
   WorldSolid& one = solid(active.solid);
   const double stiffness = one.stiffness();
+  // A setting that is turned acts at once; the path of the tip bounds only what the tip causes.
+  if (stiffness != active.stiffness && active.stiffness > 0 && stiffness > 0) {
+    if (stiffness_ref_ == active.stiffness) {
+      stiffness_ref_ = stiffness;
+    } else {
+      filter_.rescale(stiffness / active.stiffness);
+    }
+  }
+  active.stiffness = stiffness;
   if (stiffness > stiffness_ref_) {
     if (stiffness_ref_ > 0) filter_.rescale(stiffness_ref_ / stiffness);
     stiffness_ref_ = stiffness;
@@ -505,6 +584,8 @@ driver::ForceCommand ContactWorld::feel_several(const driver::DeviceState& state
   std::array<std::int32_t, kActiveMax> felt{};
   std::size_t felt_count = 0;
   double stiffest = 0, lambda_sum = 0, squares = 0, weighted = 0;
+  std::array<double, kPlanesMax> plane_stiffness_before{};
+  bool turned = false;
   for (std::size_t i = 0; i < active_count_; ++i) {
     const double lambda = push_.lambda[i];
     if (!(lambda > 0)) continue;
@@ -516,6 +597,9 @@ driver::ForceCommand ContactWorld::feel_several(const driver::DeviceState& state
   for (std::size_t k = 0; k < list.count; ++k) {
     const double squared = push_.out.lambda[k] * push_.out.lambda[k];
     plane_stiffness[k] = stiffness[list.owner[k]];
+    const double before = active_[list.owner[k]].stiffness;
+    plane_stiffness_before[k] = before > 0 ? before : plane_stiffness[k];
+    turned = turned || plane_stiffness_before[k] != plane_stiffness[k];
     squares += squared;
     weighted += squared * plane_stiffness[k];
   }
@@ -525,6 +609,16 @@ driver::ForceCommand ContactWorld::feel_several(const driver::DeviceState& state
   }
   const SharedForce shared =
       shared_force_of(list.all(), std::span(plane_stiffness).first(list.count), push_.out);
+  if (turned) {
+    // As in feel_one.
+    const double before =
+        shared_force_of(list.all(), std::span(plane_stiffness_before).first(list.count), push_.out)
+            .f_W.norm();
+    if (before > 0) filter_.rescale(shared.f_W.norm() / before);
+  }
+  for (std::size_t i = 0; i < active_count_; ++i) {
+    if (stiffness[i] > 0) active_[i].stiffness = stiffness[i];
+  }
   ContactState goal{.touching = true, .triangle = active_[0].found.triangle};
   goal.n_W = active_[0].found.n_W;
   const double size = shared.f_W.norm();

@@ -98,7 +98,7 @@ class THIMBLE_EXPORT ContactWorld {
   void move(const Eigen::Vector3d& p_WT) noexcept;
   bool advance(const Eigen::Vector3d& goal) noexcept;
   void begin(std::int32_t solid, std::int32_t triangle, const Eigen::Vector3d& p_W) noexcept;
-  bool follow_active(const Eigen::Vector3d& p_WT) noexcept;
+  bool follow_active(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& ahead) noexcept;
   const ContactState& follow_one(Active& active) noexcept;
   bool hidden(const Active& active, const ContactState& found) noexcept;
   Eigen::Vector3d shifted(const Eigen::Vector3d& p_WT, const Push& push, std::size_t i,
@@ -106,6 +106,7 @@ class THIMBLE_EXPORT ContactWorld {
   double nearer(const Eigen::Vector3d& p_WT, const Push& push, std::size_t i) const noexcept;
   bool agrees(const Eigen::Vector3d& p_WT, const Push& push) const noexcept;
   void revive_ended() noexcept;
+  bool inside_ended() const noexcept;
   void drop_ended() noexcept;
   Planes planes() const noexcept;
   Push push(const Eigen::Vector3d& p_WT) const noexcept;

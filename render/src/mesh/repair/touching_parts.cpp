@@ -316,8 +316,9 @@ std::string describe(const TouchingParts& parts) {
                                         parts.pairs, parts.pairs == 1 ? "" : "s");
   return fmt::format(
       "{} overlap or lie flush against each other (first: triangles {} and {}, near ({:.4g}, "
-      "{:.4g}, {:.4g})). Contact finds a cavity where they overlap, and the tip may catch or lose "
-      "contact at their seam. Join them into one body in a mesh editor.",
+      "{:.4g}, {:.4g})). The tip feels their union. Join them into one body in a mesh editor if "
+      "the "
+      "object dents or changes shape.",
       pairs, parts.triangles[0], parts.triangles[1], parts.place.x(), parts.place.y(),
       parts.place.z());
 }

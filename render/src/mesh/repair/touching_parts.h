@@ -15,8 +15,9 @@ namespace thimble::render {
 /// mesh's box: the error of flush faces after rounding to single precision.
 inline constexpr double kFlushTolerance = 1e-6;
 
-/// The parts of a mesh that overlap or touch each other. Where they overlap, contact finds a
-/// cavity; at their seam a tip may catch or lose contact.
+/// The parts of a mesh that overlap or touch each other. The tip feels their union
+/// (overlapping_parts.h), unless the object dents or changes shape: then contact finds a cavity
+/// where they overlap.
 struct TouchingParts {
   std::size_t pairs = 0;                          ///< Number of pairs of parts that touch.
   std::array<std::int32_t, 2> triangles{-1, -1};  ///< Triangles of the first pair, one per part.

@@ -57,13 +57,13 @@ double stick_stiffness_max(const EffectContext& context) {
 
 double read_stick_stiffness(SettingsReader& reader, const EffectContext& context, double holding) {
   const double most = stick_stiffness_max(context);
-  constexpr double kRounding = 1 + 1e-9;
+  constexpr double kAllowance = 1 + 1e-9;
   double stiffness = most;
   if (reader.has("stiffness") && reader.has("z_max")) {
     reader.reject("z_max", "cannot be combined with stiffness; remove one of them");
   } else if (reader.has("stiffness")) {
     reader.number("stiffness", stiffness, {.unit = "N/m", .min = 1, .max = kStiffnessMax});
-    if (stiffness > kRounding * most) {
+    if (stiffness > kAllowance * most) {
       reader.reject("stiffness", refusal(stiffness, most, "lower it or remove it"));
     }
   } else if (reader.has("z_max")) {
@@ -74,7 +74,7 @@ double read_stick_stiffness(SettingsReader& reader, const EffectContext& context
     if (!(force > 0)) {
       reader.reject("z_max",
                     "needs friction and an arm with a maximum force; set stiffness instead");
-    } else if (stiffness > kRounding * most) {
+    } else if (stiffness > kAllowance * most) {
       const std::string least =
           fmt::format("expected z_max >= {:.3g} m, found {:.3g} m", force / most, bend);
       reader.reject("z_max", refusal(stiffness, most, least));

@@ -124,7 +124,7 @@ TEST(TouchingParts, AreDescribedWithAPlaceAndARemedy) {
   const std::string text = describe(find_touching_parts(*mesh));
   EXPECT_EQ(text.substr(0, 70),
             "1 pair of parts overlap or lie flush against each other (first: triang");
-  EXPECT_NE(text.find("Join them into one body in a mesh editor."), std::string::npos);
+  EXPECT_NE(text.find("Join them into one body in a mesh editor"), std::string::npos);
 }
 
 }  // namespace

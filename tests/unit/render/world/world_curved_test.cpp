@@ -1,0 +1,182 @@
+// Curved solids that overlap: the proxy is outside of all of them, and the tip presses it against
+// those it touches.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "support/long_form.h"
+#include "support/random.h"
+#include "thimble/driver/device_state.h"
+#include "thimble/render/build_primitive_touch.h"
+#include "thimble/render/scene_touch.h"
+#include "track/path_bounded.h"
+#include "world/contact_world.h"
+
+namespace thimble::render {
+namespace {
+
+using Eigen::Vector3d;
+using support::Random;
+
+constexpr double kStiffness = 800;
+constexpr double kSize = 0.04;  // m, of a scene
+
+driver::DeviceState at(const Vector3d& p) {
+  driver::DeviceState state;
+  state.p_WT = p;
+  return state;
+}
+
+/// Signed distance and outward normal of a surface.
+struct Surface {
+  double distance = 0;
+  Vector3d n{0, 0, 0};
+};
+
+Surface surface_of(const Sphere& sphere, const Vector3d& p) {
+  const Vector3d from = p - sphere.p_WO;
+  return {from.norm() - sphere.radius, from.normalized()};
+}
+Surface surface_of(const HalfSpace& plane, const Vector3d& p) {
+  return {plane.n_W.dot(p - plane.p_WO), plane.n_W};
+}
+
+/// Distance of v from the cone of up to three of the normals: by all subsets, with a least-squares
+/// solution each.
+double off_cone(const std::vector<Vector3d>& normals, const Vector3d& v) {
+  double best = v.norm();
+  const std::size_t count = normals.size();
+  for (std::uint32_t subset = 1; subset < (1u << count); ++subset) {
+    Eigen::Matrix3Xd N(3, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+      if ((subset >> i & 1u) == 0) continue;
+      N.conservativeResize(3, N.cols() + 1);
+      N.col(N.cols() - 1) = normals[i];
+    }
+    if (N.cols() > 3) continue;
+    const Eigen::VectorXd x = N.colPivHouseholderQr().solve(v);
+    if (x.minCoeff() < -1e-9 * v.norm()) continue;
+    best = std::min(best, (N * x - v).norm());
+  }
+  return best;
+}
+
+/// What a tip found among curved solids.
+struct Found {
+  int several = 0;    ///< Ticks with several active solids.
+  int acute = 0;      ///< Of these, ticks in a groove of less than 60 degrees.
+  double inside = 0;  ///< Greatest depth of the proxy in a solid, m.
+  int off_count = 0;  ///< Ticks with proxy - tip farther than 1e-9 m from the cone of the normals.
+  double off = 0;     ///< Greatest distance from that cone, m.
+  double force_off = 0;  ///< Greatest difference of the force from that of the proxy, N.
+  std::uint64_t unsettled = 0;
+};
+
+Found wander(Random& random, int ticks, double depth_max) {
+  std::vector<Sphere> spheres;
+  const auto count = static_cast<std::size_t>(random.uniform(1, 7));
+  for (std::size_t i = 0; i < count; ++i) {
+    spheres.push_back({.p_WO = random.in_box(0.02), .radius = random.uniform(0.004, 0.02)});
+  }
+  const HalfSpace plane{.n_W = {0, 0, 1}, .p_WO = {0, 0, random.uniform(-0.02, 0)}};
+  std::vector<std::unique_ptr<ObjectTouch>> objects;
+  objects.push_back(build_primitive_touch(plane, {.spring = {.stiffness = kStiffness}}));
+  for (const Sphere& sphere : spheres) {
+    objects.push_back(build_primitive_touch(sphere, {.spring = {.stiffness = kStiffness}}));
+  }
+  SceneTouch scene(std::move(objects));
+  Found result;
+  Vector3d p(0, 0, 0.1), target = random.in_box(0.02);
+  scene(at(p));
+  ProxyFilter filter;
+  filter.follow(p, {});
+  for (int tick = 0; tick < ticks; ++tick) {
+    if (random.uniform(0, 1) < 0.004) target = random.in_box(0.025);
+    const Vector3d way = target - p;
+    p += std::min(1.0, random.uniform(0, 2e-4) / way.norm()) * way;
+    const Vector3d deep = p - scene.world()->proxy();
+    if (deep.norm() > depth_max) p -= (1 - depth_max / deep.norm()) * deep;
+    const driver::ForceCommand command = scene(at(p));
+    const Vector3d q = scene.world()->proxy();
+    std::vector<Vector3d> normals;
+    const auto look = [&](const Surface& surface) {
+      result.inside = std::max(result.inside, -surface.distance);
+      if (std::abs(surface.distance) < 1e-6) normals.push_back(surface.n);
+    };
+    look(surface_of(plane, q));
+    for (const Sphere& sphere : spheres) look(surface_of(sphere, q));
+    if (scene.world()->active_count() > 1) ++result.several;
+    double least = 1;
+    for (const Vector3d& a : normals) {
+      for (const Vector3d& b : normals) least = std::min(least, a.dot(b));
+    }
+    if (least < -0.5) ++result.acute;
+    const double off = off_cone(normals, q - p);
+    if (off > 1e-9) ++result.off_count;
+    result.off = std::max(result.off, off);
+    ContactState found{.touching = scene.world()->active_count() > 0, .depth = (q - p).norm()};
+    found.n_W = found.depth > 0 ? Vector3d((q - p) / found.depth) : Vector3d::UnitX();
+    const ContactState& felt = filter.follow(p, found) ? found : filter.felt();
+    const Vector3d f_W =
+        found.touching ? Vector3d(kStiffness * felt.depth * felt.n_W) : Vector3d(0, 0, 0);
+    result.force_off = std::max(result.force_off, (command.f_T_W - f_W).norm());
+  }
+  result.unsettled = scene.world()->counters().unsettled;
+  return result;
+}
+
+Found wander_in_all(int scenes, int ticks, double depth_max) {
+  Random random(scenes);
+  Found all;
+  for (int i = 0; i < scenes; ++i) {
+    const Found one = wander(random, ticks, depth_max);
+    all.several += one.several;
+    all.acute += one.acute;
+    all.inside = std::max(all.inside, one.inside);
+    all.off_count += one.off_count;
+    all.off = std::max(all.off, one.off);
+    all.force_off = std::max(all.force_off, one.force_off);
+    all.unsettled += one.unsettled;
+  }
+  std::printf(
+      "%d ticks, %d with several solids, %d in acute grooves; proxy %.1e m inside, %.1e m off, "
+      "more than 1e-9 m in %d; force %.1e N off; %d unsettled\n",
+      scenes * ticks, all.several, all.acute, all.inside, all.off, all.off_count, all.force_off,
+      static_cast<int>(all.unsettled));
+  return all;
+}
+
+TEST(WorldCurved, TheProxyRestsAgainstOverlappingSpheresAndAPlane) {
+  const int scenes = support::long_form() ? 5000 : 200;
+  // As deep as a hand can press: 4 N.
+  const Found all = wander_in_all(scenes, 2000, 0.005);
+  EXPECT_GT(all.several, scenes * 20);
+  EXPECT_GT(all.acute, scenes);
+  EXPECT_EQ(all.inside, 0);
+  EXPECT_LE(all.off_count, scenes * 2000 / 10'000);
+  EXPECT_LE(all.unsettled, static_cast<std::uint64_t>(scenes / 1000));
+  if (all.off_count > 0) return;
+  EXPECT_LT(all.off, 1e-9 * kSize);
+  EXPECT_LT(all.force_off, 1e-6);
+}
+
+// Half-way through a sphere the proxy may have to travel around it in a tick.
+TEST(WorldCurved, TheProxyIsNeverInsideAtAnyDepth) {
+  const int scenes = support::long_form() ? 5000 : 200;
+  const Found all = wander_in_all(scenes, 2000, 1);
+  EXPECT_GT(all.several, scenes * 20);
+  EXPECT_EQ(all.inside, 0);
+  EXPECT_LE(all.off_count, scenes * 2000 / 1000);
+}
+
+}  // namespace
+}  // namespace thimble::render
