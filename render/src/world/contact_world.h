@@ -78,6 +78,7 @@ class THIMBLE_EXPORT ContactWorld {
     bool ended = false;                               // has let go
     bool closely = false;                             // the tracker's proxy was refused
     Eigen::Vector3d refused_at_W{0, 0, 0};            // tip when the tracker was asked last
+    double stiffness = 0;                             // N/m, when it was felt last; 0 before
     bool tried = false;  // whether the tracker was asked again in this tick
   };
   // All planes of the active solids.
