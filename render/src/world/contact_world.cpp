@@ -544,16 +544,17 @@ void ContactWorld::leave_others(std::span<const std::int32_t> felt) noexcept {
 driver::ForceCommand ContactWorld::feel_one(const driver::DeviceState& state) noexcept {
   Active& active = active_[0];
   WorldSolid& one = solid(active.solid);
-  const double stiffness = one.stiffness();
   // A setting that is turned acts at once; the path of the tip bounds only what the tip causes.
-  if (stiffness != active.stiffness && active.stiffness > 0 && stiffness > 0) {
+  const double now = one.stiffness();
+  if (now > 0) {
     if (stiffness_ref_ == active.stiffness) {
-      stiffness_ref_ = stiffness;
-    } else {
-      filter_.rescale(stiffness / active.stiffness);
+      stiffness_ref_ = now;
+    } else if (active.stiffness > 0) {
+      stiffness_ref_ *= now / active.stiffness;
     }
+    active.stiffness = now;
   }
-  active.stiffness = stiffness;
+  const double stiffness = active.stiffness;
   if (stiffness > stiffness_ref_) {
     if (stiffness_ref_ > 0) filter_.rescale(stiffness_ref_ / stiffness);
     stiffness_ref_ = stiffness;
@@ -614,7 +615,8 @@ driver::ForceCommand ContactWorld::feel_several(const driver::DeviceState& state
     const double before =
         shared_force_of(list.all(), std::span(plane_stiffness_before).first(list.count), push_.out)
             .f_W.norm();
-    if (before > 0) filter_.rescale(shared.f_W.norm() / before);
+    const double after = shared.f_W.norm();
+    if (before > 0 && after > 0) stiffness_ref_ *= after / before;
   }
   for (std::size_t i = 0; i < active_count_; ++i) {
     if (stiffness[i] > 0) active_[i].stiffness = stiffness[i];
