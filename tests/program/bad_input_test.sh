@@ -162,7 +162,7 @@ expect_error 2 'nofile.h5 file' "$thimble" view nofile.h5 --text
 expect_error 2 'nofile.h5 file' "$thimble" view nofile.h5
 # A wire so slow that no report arrives is an error of the arm file, found at once.
 sed -E 's/^( *)delay_in: [0-9.]+/\1delay_in: 1/' arms/vintage_phantom.yaml >arms/late.yaml
-expect_error 2 'arms/late.yaml:# delay_in 0.256 s' timeout 20 "$thimble" run scenes/box.yaml --arm arms/late.yaml
+expect_error 2 'late.yaml:# delay_in 0.256 s' timeout 20 "$thimble" run scenes/box.yaml --arm arms/late.yaml
 # A viewer ends at the given time although there is no run.
 expect 0 . timeout 20 "$thimble" view no_such_run --text --for 0.2
 
