@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "arm/report_timeout.h"
 #include "log/logger.h"
 #include "thimble/scene/device_settings.h"
 #include "thimble/scene/real_arm.h"
@@ -85,7 +86,9 @@ driver::Result<void> BenchArm::open_device(const scene::ArmFile& file,
   if (real_arm && heat.named()) {
     heat.at_start = scene::load_heat(real_arm->name(), heat, scene::world_time()).heat;
   }
-  auto device = driver::Device::open(std::move(link), settings, clock_->now_ns());
+  auto device =
+      driver::Device::open(std::move(link), settings, clock_->now_ns(),
+                           real_arm ? scene::kReportTimeout_ns : scene::report_timeout_ns(file));
   if (!device) return device.error();
   device_ = std::move(device).value();
   if (real_arm && heat.named()) {

@@ -35,12 +35,19 @@ void ArmChoice::add_real_time_option(CLI::App& command) {
       ->group("Arm");
 }
 
+driver::Result<void> check_arm_file(const std::string& arm_file) {
+  if (arm_file.empty()) return {};
+  const auto file = scene::load_arm(arm_file);
+  return file ? driver::Result<void>() : file.error();
+}
+
 driver::Result<void> check_priority(const ArmChoice& choice, const ChosenArm& chosen) {
   if (!chosen.real_arm) return {};
   return session::check_real_time(session::ServoThread(true).grant(), choice.no_real_time);
 }
 
 driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration) {
+  if (auto readable = check_arm_file(choice.arm_file); !readable) return readable.error();
   ChosenArm chosen;
   std::string left;  // boards of unknown kind
   if (choice.device != "sim") {
@@ -90,7 +97,8 @@ driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration)
 }
 
 ExitCode exit_code_of(const ArmChoice& refused) {
-  return refused.device == "sim" ? kExitBadInput : kExitNoDevice;
+  const bool bad_input = refused.device == "sim" || !check_arm_file(refused.arm_file);
+  return bad_input ? kExitBadInput : kExitNoDevice;
 }
 
 SimulatedNote::SimulatedNote(const ChosenArm& arm, const char* kept) {

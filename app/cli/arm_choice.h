@@ -38,6 +38,10 @@ struct ChosenArm {
   std::string name;                          ///< FoundArm::name, or "sim"
 };
 
+/// Fails if the file of --arm cannot be read, whichever arm is used. An empty path is valid.
+/// Real-time: never from the servo thread.
+driver::Result<void> check_arm_file(const std::string& arm_file);
+
 /// Finds the arm that a choice selects and reads its file. A plugged arm comes first, with its
 /// calibration unless it is chosen `for_calibration`; otherwise the simulated arm of --arm is used.
 /// The error contains the remedy. Real-time: never from the servo thread.
@@ -48,7 +52,7 @@ driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration)
 driver::Result<void> check_priority(const ArmChoice& choice, const ChosenArm& chosen);
 
 /// Returns the exit code of a command whose arm could not be resolved: bad input for a simulated
-/// arm, otherwise no device.
+/// arm or an invalid arm file, otherwise no device.
 ExitCode exit_code_of(const ArmChoice& refused);
 
 /// Prints on the first and the last line that an arm is simulated, so that results are not mistaken

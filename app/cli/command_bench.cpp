@@ -28,7 +28,7 @@ struct BenchOptions {
 
 int run_bench(const BenchOptions& options) {
   output::OutputPlan plan;
-  plan.write_folder("--out", options.out, {"figures.json"});
+  plan.write_folder("--out", options.out, {"figures.json"}, /*plots=*/false);
   if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto scene = scene::find_scene(options.scene);  // the default was not resolved yet
   if (!scene) return report_error(scene.error(), kExitBadInput);

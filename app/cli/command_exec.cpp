@@ -357,6 +357,7 @@ void add_exec_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"haply"}))
       ->group(kService);
   command->add_option("--port", asked->port, "Port of --serve; 0: any free port")
+      ->check(CLI::Range(0, 65535))
       ->capture_default_str()
       ->group(kService);
   constexpr const char* kOutput = "Output";

@@ -1,4 +1,6 @@
+#include <arpa/inet.h>
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
@@ -252,6 +254,13 @@ std::string check_arm_name(const std::string& name) {
   return "expected one of " + known + "; found \"" + name + "\"." + suggestion(name, names);
 }
 
+/// Returns why a text is no address of the server; "" if it is one.
+std::string check_address(const std::string& text) {
+  in_addr address{};
+  if (inet_pton(AF_INET, text.c_str(), &address) == 1) return {};
+  return "expected an IPv4 address, for example 127.0.0.1, found \"" + text + "\"";
+}
+
 /// Returns the names and descriptions of the arms, one per line.
 std::string arm_list() {
   std::string list = "Arms:\n";
@@ -289,10 +298,12 @@ void add_plug_command(CLI::App& app, int& exit_code) {
       ->add_flag("--attach", options->attach, "Attach it to this kernel (needs root and vhci-hcd)")
       ->group(kConnection);
   command->add_option("--port", options->port, "TCP port of the server; 0: any free port")
+      ->check(CLI::Range(0, 65535))
       ->capture_default_str()
       ->group(kConnection);
   command->add_option("--listen", options->address, "Address of the server; 0.0.0.0: all networks")
       ->option_text("ADDRESS")
+      ->check(CLI::Validator(check_address, ""))
       ->capture_default_str()
       ->group(kConnection);
   constexpr const char* kArm = "Simulated arm";

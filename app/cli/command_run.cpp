@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/arm_choice.h"
 #include "cli/commands.h"
 #include "cli/end_run.h"
 #include "cli/file_options.h"
@@ -187,13 +188,25 @@ struct RunContext {
 };
 
 /// Returns the object whose mesh is saved; -1 for all.
-driver::Result<int> find_saved_object(const session::Session& session, const RunOptions& options) {
+driver::Result<int> find_object(const session::Session& session, const RunOptions& options) {
   if (options.save_object.empty()) return -1;
   if (const auto object = session.find_object(options.save_object)) return *object;
   std::vector<std::string> names;
   for (const auto& object : session.scene().objects) names.push_back(object.name);
   return driver::Error{"--save-object: there is no object \"" + options.save_object +
                        "\" in the scene." + suggestion(options.save_object, names)};
+}
+
+/// As `find_object`. Fails if --save-mesh would write a file without triangles.
+driver::Result<int> find_saved_object(const session::Session& session, const RunOptions& options) {
+  auto object = find_object(session, options);
+  if (!object || options.save_mesh.empty()) return object;
+  if (!session.mesh_now(*object).triangles.empty()) return object;
+  if (*object < 0) {
+    return driver::Error{"--save-mesh: no object of the scene has a mesh. Remove the option."};
+  }
+  return driver::Error{"--save-object: the object \"" + options.save_object +
+                       "\" has no mesh. Name another object."};
 }
 
 /// Prepares the next run without viewers and recording, while the current one continues.
@@ -304,9 +317,23 @@ void plan_outputs(const RunOptions& options, output::OutputPlan& plan) {
   plan.write_folder("--report", options.report, report::run_file_names());
 }
 
+/// Checks the folders of a report that has one folder per arm.
+driver::Result<void> begin_arm_folders(const session::Session& session, const RunOptions& options,
+                                       output::OutputPlan& plan) {
+  if (session.arms() == 1 || options.report.empty()) return {};
+  for (std::size_t arm = 0; arm < session.arms(); ++arm) {
+    plan.write_folder("--report", std::filesystem::path(options.report) / session.arm_name(arm),
+                      report::run_file_names());
+  }
+  return plan.begin();
+}
+
 int run_scene(RunOptions& options) {
   if (const auto fits = check_run_options(options); !fits)
     return report_error(fits.error(), kExitBadInput);
+  if (const auto readable = check_arm_file(options.arm_file); !readable) {
+    return report_error(readable.error(), kExitBadInput);
+  }
   const auto arms = session::choose_run_arms(
       options.devices,
       {.arm_file = options.arm_file, .firmware = options.firmware, .unchecked = options.unchecked});
@@ -334,6 +361,9 @@ int run_scene(RunOptions& options) {
   auto prepared = session::Session::prepare(options.scene, context.asked);
   if (!prepared) return report_error(prepared.error(), kExitBadInput);
   std::unique_ptr<session::Session> session = std::move(prepared).value();
+  if (const auto begun = begin_arm_folders(*session, options, outputs); !begun) {
+    return report_error(begun.error(), kExitBadInput);
+  }
   for (;;) {
     std::unique_ptr<session::Session> then;
     const ExitCode code = run_one(context, *session, then);

@@ -93,6 +93,23 @@ std::string output_error(const ShotOptions& options) {
   return {};
 }
 
+/// Returns what is wrong with the camera; empty if nothing is.
+std::string camera_error(const ShotOptions& options) {
+  constexpr double kZoomMin = 0.01, kZoomMax = 100;  // outside of them nothing is seen [chosen]
+  if (options.camera.size() < 3) return {};
+  const double zoom = options.camera[2];
+  if (zoom >= kZoomMin && zoom <= kZoomMax) return {};
+  return fmt::format("--camera: expected a ZOOM from {:g} to {:g}, found {:g}.", kZoomMin, kZoomMax,
+                     zoom);
+}
+
+/// Returns an error if the animation ends before it begins at `at`, s; empty if not.
+std::string span_error(const ShotOptions& options, double at) {
+  if (options.until < 0 || options.until > at) return {};
+  return fmt::format("--until {:g}: expected a time after the first picture at {:g} s ({}).",
+                     options.until, at, options.at ? "--at" : "largest force; choose with --at");
+}
+
 /// Writes the pictures in the format given by the file's ending, and prints what was written.
 int write_animation(const std::vector<view::Picture>& pictures, const ShotOptions& options) {
   const double frame_time = 1 / options.pace;
@@ -135,7 +152,9 @@ int take_shot(const ShotOptions& options) {
         {"--out FILE.png or --animate FILE (.mp4, .gif or .png) is missing. Add one of them."},
         kExitBadInput);
   }
-  for (const std::string& wrong : {output_error(options), time_error(options)}) {
+  const std::string span = options.at ? span_error(options, *options.at) : std::string();
+  for (const std::string& wrong :
+       {output_error(options), camera_error(options), span, time_error(options)}) {
     if (!wrong.empty()) return report_error({wrong}, kExitBadInput);
   }
   if (view::is_animation(options.animate)) {
@@ -175,6 +194,9 @@ int take_shot(const ShotOptions& options) {
     const auto found = view::strongest_moment(options.scene, session);
     if (!found) return report_error(found.error(), kExitBadInput);
     at = *found;
+    if (const std::string wrong = span_error(options, at); !wrong.empty()) {
+      return report_error({wrong}, kExitBadInput);
+    }
   }
   const bool animated = !options.animate.empty();
   std::vector<double> times = {at};
@@ -282,7 +304,8 @@ void add_shot_command(CLI::App& app, int& exit_code) {
   add_example(*command, "thimble shot elephant --at 2 --out elephant.png",
               "--animate  From --at to --until. MP4 and GIF require ffmpeg; PNG is animated.\n"
               "--camera   YAW: degrees about z, from the user's side. PITCH: degrees above the\n"
-              "           horizon. ZOOM: a factor. By default the camera frames the scene.");
+              "           horizon. ZOOM: a factor from 0.01 to 100. By default the camera frames\n"
+              "           the scene.");
   command->callback([options, &exit_code] { exit_code = take_shot(*options); });
 }
 

@@ -54,7 +54,7 @@ int tune_scene(const TuneCommand& command) {
   output::OutputPlan plan;
   plan.read(command.scene);
   plan.read(command.arm_file);
-  plan.write_folder("--out", command.folder, {"figures.json"});
+  plan.write_folder("--out", command.folder, {"figures.json"}, /*plots=*/false);
   if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto scene = scene::load_scene(command.scene, {.arm = command.arm_file});
   if (!scene) return report_error(scene.error(), kExitBadInput);

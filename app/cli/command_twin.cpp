@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
@@ -31,6 +33,12 @@ struct TwinCommand {
 };
 
 int compare(const TwinCommand& command) {
+  const twin::TwinSpan& span = command.options.span;
+  if (!(span.from < span.until)) {
+    return report_error(
+        {fmt::format("--until {:g}: expected a time after --from {:g}.", span.until, span.from)},
+        kExitBadInput);
+  }
   output::OutputPlan plan;
   plan.read(command.recording);
   plan.read(command.arm_file);

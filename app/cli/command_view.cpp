@@ -246,9 +246,14 @@ bool is_recording(const std::string& shown) {
 
 int view_recordings(const ViewOptions& options, const ShowWindow& show_window) {
   for (const std::string& file : options.shown) {
-    if (is_recording(file)) continue;
-    return report_error({file + " is the name of a run. Name either one run or recordings."},
-                        kExitBadInput);
+    if (!is_recording(file)) {
+      return report_error({file + " is the name of a run. Name either one run or recordings."},
+                          kExitBadInput);
+    }
+    std::error_code unknown;
+    if (!std::filesystem::exists(file, unknown)) {
+      return report_error({"RUN: there is no file " + file + "."}, kExitBadInput);
+    }
   }
   if (options.is_for_runs()) {
     return report_error(

@@ -89,7 +89,8 @@ Vector2d MeshView::project(const Vector3d& p_W) const {
 
 bool MeshView::hides(const Vector3d& p_W, double tolerance) const {
   const Vector2d sample = (project(p_W) - origin_) / pitch_;
-  if (!(sample.minCoeff() >= 0 && sample.maxCoeff() < samples_)) return false;
+  // Written so that NaN hides nothing; Eigen's minimum and maximum do not detect it.
+  if (!(sample.array() >= 0 && sample.array() < static_cast<double>(samples_)).all()) return false;
   const double depth = direction_.w_W.dot(p_W) + tolerance;
   const auto column = static_cast<int>(sample.x());
   const auto row = static_cast<int>(sample.y());

@@ -36,6 +36,43 @@ double report_period_ms(const scene::ArmFile& arm, double rate) {
 /// Max. delay in periods for the exact map of a tick [chosen].
 constexpr double kPeriodsLate = 32;
 
+/// A wall in the linear loop of an arm.
+class WallLoop {
+ public:
+  WallLoop(const scene::ArmFile& arm, const scene::LoopTimes& times, double damping)
+      : arm_(arm),
+        latency_(scene::latency_of(times)),
+        tip_(scene::worst_over_workspace(arm)),
+        damping_(damping) {
+    // A delay of many periods is equivalent to a coarser loop of the same latency, whose map of a
+    // tick stays small.
+    const bool many = latency_ - times.period / 2 > kPeriodsLate * times.period;
+    period_ = many ? latency_ / (kPeriodsLate + 0.5) : times.period;
+  }
+  double latency() const { return latency_; }
+  const scene::TipLimits& tip() const { return tip_; }
+
+  /// Returns the largest stable stiffness of the wall with a hand, N/m.
+  double edge_with(const device_sim::HandSettings& hand) const {
+    return stiffness_edge({.mass = tip_.mass + hand.mass,
+                           .viscous = tip_.damping + hand.damping,
+                           .hand_stiffness = hand.stiffness,
+                           .damping = damping_,
+                           .velocity_corner = arm_.velocity_corner_frequency,
+                           .period = period_,
+                           .delay = latency_ - period_ / 2});
+  }
+  /// Returns the largest stable stiffness of the wall with the hand of the arm file, N/m.
+  double edge() const { return edge_with(arm_.simulated.hand); }
+
+ private:
+  const scene::ArmFile& arm_;
+  double latency_;  // s
+  scene::TipLimits tip_;
+  double damping_;  // N s/m
+  double period_;   // s
+};
+
 /// Smallest limits of the simulated walls.
 struct Edges {
   double linear = std::numeric_limits<double>::infinity();  // without dry friction and steps, N/m
@@ -84,9 +121,8 @@ constexpr double kRateMax = 1e5;
 /// scene's. Empty if a faster loop would wait for the arm's reports and wire.
 std::optional<double> stable_rate(const scene::Scene& scene, const scene::SceneObject& object) {
   const auto carries = [&](double rate) {
-    return stability_limits(scene.arms.front().arm, loop_times(scene.arms.front().arm, rate),
-                            object.stiffness, object.damping)
-               .stiffness_exact >= object.stiffness;
+    const scene::ArmFile& arm = scene.arms.front().arm;
+    return WallLoop(arm, loop_times(arm, rate), object.damping).edge() >= object.stiffness;
   };
   for (int times = 2; times <= 8; ++times) {
     if (times * scene.rate <= kRateMax && carries(times * scene.rate)) return times * scene.rate;
@@ -99,8 +135,11 @@ std::optional<double> stable_rate(const scene::Scene& scene, const scene::SceneO
 std::optional<double> stable_damping(const scene::Scene& scene, const scene::SceneObject& object,
                                      const scene::LoopTimes& times) {
   const auto carries = [&](double damping) {
-    return stability_limits(scene.arms.front().arm, times, object.stiffness, damping)
-               .stiffness_safe >= object.stiffness;
+    const scene::ArmFile& arm = scene.arms.front().arm;
+    // Most damping fails with the hand of the file already; other hands take 8 times as long.
+    return kShare * WallLoop(arm, times, damping).edge() >= object.stiffness &&
+           stability_limits(arm, times, object.stiffness, damping).stiffness_safe >=
+               object.stiffness;
   };
   double low = object.damping;
   for (int halved = 0; halved < 12; ++halved) {
@@ -247,28 +286,16 @@ scene::LoopTimes loop_times(const scene::ArmFile& arm, double rate, double perio
 
 StabilityLimits stability_limits(const scene::ArmFile& arm, const scene::LoopTimes& times,
                                  double stiffness, double damping) {
+  const WallLoop loop(arm, times, damping);
   StabilityLimits carried;
   carried.times = times;
-  carried.latency = scene::latency_of(times);
-  carried.tip = scene::worst_over_workspace(arm);
+  carried.latency = loop.latency();
+  carried.tip = loop.tip();
   carried.damping = carried.tip.damping + arm.simulated.hand.damping;
   carried.stiffness_law = scene::stiffness_limit(carried.damping + damping, carried.latency);
   // Jitter acts like this additional delay [PHYSICS 1.1].
   const double more = carried.latency - times.period / 2;
-  // A delay of many periods is equivalent to a coarser loop of the same latency, whose map of a
-  // tick stays small.
-  const bool many = more > kPeriodsLate * times.period;
-  const double period = many ? carried.latency / (kPeriodsLate + 0.5) : times.period;
-  const auto edge_with = [&](const device_sim::HandSettings& hand) {
-    return stiffness_edge({.mass = carried.tip.mass + hand.mass,
-                           .viscous = carried.tip.damping + hand.damping,
-                           .hand_stiffness = hand.stiffness,
-                           .damping = damping,
-                           .velocity_corner = arm.velocity_corner_frequency,
-                           .period = period,
-                           .delay = carried.latency - period / 2});
-  };
-  carried.stiffness_exact = edge_with(arm.simulated.hand);
+  carried.stiffness_exact = loop.edge();
   carried.stiffness_any_hand = carried.stiffness_exact;
   carried.worst_hand = arm.simulated.hand;
   for (int corner = 0; corner < 8; ++corner) {
@@ -277,7 +304,7 @@ StabilityLimits stability_limits(const scene::ArmFile& arm, const scene::LoopTim
     hand.mass *= times_of(0);
     hand.stiffness *= times_of(1);
     hand.damping *= times_of(2);
-    const double edge = edge_with(hand);
+    const double edge = loop.edge_with(hand);
     if (edge < carried.stiffness_any_hand) {
       carried.stiffness_any_hand = edge;
       carried.worst_hand = hand;
@@ -304,11 +331,12 @@ std::vector<std::string> stability_warnings(const scene::Scene& scene) {
   if (!scene.arms.front().arm.can_simulate) return warnings;  // its tip is unknown
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > 0)) continue;
-    const StabilityLimits carried =
-        stability_limits(scene.arms.front().arm, loop_times(scene.arms.front().arm, scene.rate),
-                         object.stiffness, object.damping);
-    if (object.stiffness > carried.stiffness_exact) {
-      warnings.push_back(advice(scene, object, carried));
+    const scene::ArmFile& arm = scene.arms.front().arm;
+    const scene::LoopTimes times = loop_times(arm, scene.rate);
+    // The other limits are needed only for advice.
+    if (object.stiffness > WallLoop(arm, times, object.damping).edge()) {
+      warnings.push_back(
+          advice(scene, object, stability_limits(arm, times, object.stiffness, object.damping)));
     }
   }
   for (std::string& warning : energy_warnings(scene)) warnings.push_back(std::move(warning));

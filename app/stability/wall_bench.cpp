@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "arm/report_timeout.h"
 #include "simulated_arm.h"
 #include "thimble/driver/clock.h"
 #include "thimble/driver/device.h"
@@ -185,7 +186,7 @@ driver::Result<WallRun> run_wall(const scene::ArmFile& file, const WallCase& wal
                                       .velocity_corner_frequency = arm.velocity_corner_frequency,
                                       .silence_limit_ns = 1'000'000'000,
                                       .no_motors = true},
-                                     clock.now_ns());
+                                     clock.now_ns(), scene::report_timeout_ns(arm));
   if (!opened) return opened.error();
   driver::Device& device = **opened;
   if (auto active = device.activate(); !active) return active.error();

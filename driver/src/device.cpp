@@ -115,7 +115,8 @@ Result<std::unique_ptr<Device>> Device::open(std::unique_ptr<ArmLink> link,
                  " rejected). Check that the arm file matches this arm."};
   }
   return Error{"The arm sent no report within " + std::to_string(timeout_ns / 1'000'000) +
-               " ms. Check its power and cable, and close other programs that use it."};
+               " ms. If it is real, check its power and cable, and close other programs that use "
+               "it. If it is simulated, reduce delay_in and loss in its arm file."};
 }
 
 Result<void> Device::activate(HomeCheck home) {

@@ -66,6 +66,16 @@ expect_words 137 'signal 9' run sh -c 'kill -9 $$'
 expect_words 2 'nonesuch vintage_phantom' run --arm nonesuch "$clients/calibration"
 echo 'zero 0 0' >bad.txt
 expect_words 2 'bad.txt:1 "t x y z"' run --hand bad.txt "$clients/calibration"
+# Input is checked before the program starts, even if it opens no arm.
+: >empty.yaml
+expect_error 2 '--arm nonesuch' run --arm nonesuch true
+expect_error 2 'empty.yaml' run --arm ./empty.yaml true
+expect_error 2 'empty.yaml' run --arm polhem --arm ./empty.yaml true
+expect_error 2 '--scene nonesuch' run --scene nonesuch true
+expect_error 2 'empty.yaml' run --scene ./empty.yaml true
+expect_error 2 '--hand nofile' run --hand nofile true
+expect_error 2 'bad.txt:1 --hand' run --hand bad.txt true
+expect_error 2 '--port 0 65535 "70000"' run --serve haply --port 70000
 # No files and processes remain.
 expect 1 '^$' sh -c 'ls "${TMPDIR:-/tmp}"/thimble-free-* 2>/dev/null || { echo; exit 1; }'
 finish

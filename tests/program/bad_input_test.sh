@@ -138,6 +138,31 @@ expect_words 2 'mine.yaml recording' \
 expect 0 '' cmp scenes/box.yaml scenes/mine.yaml
 sed 's/^seed:.*/rate: 40/' scenes/box.yaml >scenes/slow.yaml
 expect_words 2 'slow.yaml:11 rate 50 40' "$thimble" run scenes/slow.yaml
+# A seed above 64 bits: the message gives the range.
+expect_error 2 '--seed 0 18446744073709551615 "99999999999999999999"' \
+  "$thimble" run scenes/box.yaml --seed 99999999999999999999
+# A bad arm file is bad input, whether or not an arm is plugged in.
+for command in calibrate feel-check 'identify --output new.yaml' 'run scenes/box.yaml --device auto'; do
+  # shellcheck disable=SC2086
+  expect_error 2 'empty.yaml' "$thimble" $command --arm ./empty.yaml
+done
+# A number in quotes is a text.
+scene_with 's/^( *)stiffness:.*/\1stiffness: "800"/'
+expect_words 2 'changed.yaml:# stiffness N/m "800" quotes' "$thimble" run scenes/changed.yaml
+# Fields have no mesh to save.
+expect_error 2 '--save-mesh' "$thimble" run charges --save-mesh charges.off
+expect 1 '' test -e charges.off
+# A trajectory with a number that is not finite.
+for line in '0.5 nan 0 0' '0.5 0 0 nan' 'nan 0 0 0'; do
+  printf '0 0 0 0.03\n%s\n1 0 0 0.03\n' "$line" >nan.txt
+  expect_error 2 'nan.txt 2' "$thimble" replay nan.txt --scene scenes/box.yaml
+done
+# A missing recording is reported as such, whatever else is asked of it.
+expect_error 2 'nofile.h5 file' "$thimble" view nofile.h5 --text
+expect_error 2 'nofile.h5 file' "$thimble" view nofile.h5
+# A wire so slow that no report arrives is an error of the arm file, found at once.
+sed -E 's/^( *)delay_in: [0-9.]+/\1delay_in: 1/' arms/vintage_phantom.yaml >arms/late.yaml
+expect_error 2 'late.yaml:# delay_in 0.256 s' timeout 20 "$thimble" run scenes/box.yaml --arm arms/late.yaml
 # A viewer ends at the given time although there is no run.
 expect 0 . timeout 20 "$thimble" view no_such_run --text --for 0.2
 

@@ -34,6 +34,8 @@ expect_run 0 .ticks == 1000 "$thimble" "${run[@]}" --log own.log
 expect 0 ' two_boxes: tick 0, ' cat own.log
 expect 1 '' test -e "$file"
 expect_error 2 '--log /dev/full log' "$thimble" "${run[@]}" --log /dev/full
+expect_error 2 '--log none/own.log' "$thimble" "${run[@]}" --log none/own.log
+expect 1 '' test -e none
 
 # A log that cannot be written is reported once, and the run continues.
 mkdir -p "$work/state"

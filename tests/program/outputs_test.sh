@@ -73,11 +73,21 @@ folder() {
   mapfile -t words < <(with "kept" "$@")
   refused kept/figures.json 'figures\.json|kept' "$thimble" "${words[@]}"
 }
+# plots OPTION COMMAND...: as folder, for a folder in which plots are drawn: their data need a subfolder.
+plots() {
+  local words
+  folder "$@"
+  rm -rf kept
+  mkdir kept
+  cp precious kept/data
+  mapfile -t words < <(with "kept" "${@:2}")
+  refused kept/data 'kept/data' "$thimble" "${words[@]}"
+}
 
 run=(run scene.yaml --duration 0.05)
 file --record .h5 "scene.yaml" "${run[@]}" --record OUT
 file --save-mesh .off "scene.yaml" "${run[@]}" --save-mesh OUT
-folder --report "${run[@]}" --report OUT
+plots --report "${run[@]}" --report OUT
 file --csv .csv in.h5 export in.h5 --csv OUT
 file --sound .wav in.h5 export in.h5 --sound OUT
 folder --bag export in.h5 --bag OUT
@@ -94,25 +104,29 @@ file --out .png scene.yaml shot scene.yaml --at 0.1 --size 64x64 --out OUT
 file --animate .png scene.yaml shot scene.yaml --at 0.1 --until 0.2 --size 64x64 --animate OUT
 folder --out tune scene.yaml --out OUT
 folder --out bench scene.yaml --seconds 1 --out OUT
-folder --output twin free.h5 --arm vintage_phantom --output OUT
-folder --report identify --device sim --arm vintage_phantom --seconds 10 --output new.yaml --report OUT
+plots --output twin free.h5 --arm vintage_phantom --output OUT
+plots --report identify --device sim --arm vintage_phantom --seconds 10 --output new.yaml --report OUT
 file --record .h5 arm.yaml identify --device sim --arm arm.yaml --seconds 10 --output new.yaml --record OUT
 file --output .yaml arm.yaml identify --device sim --arm arm.yaml --seconds 10 --output OUT
 file --json .json arm.yaml hil --device sim --arm arm.yaml --json OUT
 file --junit .xml arm.yaml hil --device sim --arm arm.yaml --junit OUT
 file --record .h5 "scene.yaml arm.yaml" exec --device sim --scene scene.yaml --arm arm.yaml --record OUT true
 file --trace .txt "" plug woodenhaptics --port 0 --trace OUT
-folder --out study friction --out OUT
+plots --out study friction --out OUT
 folder --out study gating scene.yaml --out OUT
-folder --out study accuracy --no-count --out OUT
+plots --out study accuracy --no-count --out OUT
 file --table .inc "" study accuracy --table OUT
-folder --out study stability --arm vintage_phantom --coarse --out OUT
+plots --out study stability --arm vintage_phantom --coarse --out OUT
 folder --out study trouble --arm vintage_phantom --count 10 --out OUT
 file --picture .png in.h5 view in.h5 --for 1 --picture OUT
 for log in scene.yaml precious in.h5 mesh.off; do
   refused $log "--log: $log|^thimble: $log: " "$thimble" "${run[@]}" --log $log
 done
 table="$table all:--log "
+# The report of several arms has a folder per arm.
+mkdir -p arms/left
+cp precious arms/left/data
+refused arms/left/data 'arms/left/data' "$thimble" run two_hands --duration 0.05 --report arms
 
 # Options that take a file or folder in the manual are in the table. --firmware, --faults and --root are inputs, --save-as only
 # creates new files, and --record of view sends a request to the run.

@@ -10,8 +10,10 @@ expect_words 0 'mbed 0123456789' "$thimble" plug --help
 expect_words 0 'bit_errors unplug lost' "$thimble" plug --help
 expect_words 2 'woodenhaptics polhem polhem-64 falcon' "$thimble" plug excalibur --port 0
 expect 2 'hand' "$thimble" plug polhem --hand fist
-expect 2 '70000' "$thimble" plug polhem --port 70000
-expect_words 1 'IPv4' "$thimble" plug polhem --port 0 --listen nowhere
+expect_error 2 '--port 0 65535 "70000"' "$thimble" plug polhem --port 70000
+for address in nowhere 999.1.1.1 127.0.0; do
+  expect_error 2 "--listen IPv4 \"$address\"" "$thimble" plug polhem --port 0 --listen $address
+done
 expect_words 2 'missing.txt' "$thimble" plug polhem --port 0 --faults missing.txt
 echo 'mass 0.02' >mass.txt
 expect_words 2 '--arm' "$thimble" plug polhem --port 0 --faults mass.txt

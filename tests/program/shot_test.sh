@@ -11,6 +11,13 @@ expect_words 2 '--out .png a.jpg' "$thimble" shot "$scene" --out a.jpg
 expect_words 2 '--animate .mp4 .gif .png a.jpg' "$thimble" shot "$scene" --animate a.jpg
 expect_words 2 '--at 6.5 scene water_balloon 6' "$thimble" shot "$scene" --at 6.5 --out a.png
 expect_words 2 '--until 7 scene water_balloon 6' "$thimble" shot "$scene" --at 1 --animate a.png --until 7
+expect_error 2 '--until 0.5 1 --at' "$thimble" shot "$scene" --at 1 --animate a.png --until 0.5
+expect_error 2 '--until 1 --at' "$thimble" shot "$scene" --at 1 --animate a.png --until 1
+expect_error 2 '--until 0 --at' "$thimble" shot "$scene" --animate a.png --until 0
+expect 1 '' test -e a.png
+for zoom in 0 -1 1e-9 1e9; do
+  expect_error 2 '--camera ZOOM 0.01 100' "$thimble" shot "$scene" --at 1 --camera 10 20 $zoom --out a.png
+done
 expect 2 'no_such.yaml' "$thimble" shot no_such.yaml --out a.png
 if ! "$thimble" shot "$scene" --at 1 --size 160x120 --out probe.png >probe.txt 2>&1; then
   if grep -q 'No OpenGL' probe.txt && [ -z "${CI:-}" ]; then

@@ -38,6 +38,8 @@ expect 0 '^simulation\.tip\.mass ' gain free.h5 --arm heavy.yaml
 
 expect_error 2 'polhem vintage_phantom' "$thimble" twin free.h5 --arm polhem
 expect_error 2 'twin' "$thimble" twin free.h5 --arm falcon
+expect_error 2 '--until 2 --from 5' "$thimble" twin free.h5 --arm vintage_phantom --from 5 --until 2
+expect_error 2 '--until 5 --from 5' "$thimble" twin free.h5 --arm vintage_phantom --from 5 --until 5
 expect_error 2 '# s' "$thimble" twin free.h5 --arm vintage_phantom --until 1
 expect_words 2 'recording' "$thimble" twin "$arm" --arm vintage_phantom
 expect_words 2 'none.h5' "$thimble" twin none.h5 --arm vintage_phantom

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -150,7 +151,13 @@ Expectation expectation_of_check(std::string_view check, const std::string& numb
   return {};
 }
 
-Expectation expectation_of(const CLI::Option& option) {
+/// Returns whether a text is a whole number, of any size, without a sign.
+bool is_whole(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// Returns what an option accepts, for the message about a rejected `value`.
+Expectation expectation_of(const CLI::Option& option, std::string_view value = {}) {
   const auto parts = split(option.get_type_name(), ":");
   std::string number;
   if (parts.front() == "INT" || parts.front() == "UINT") number = "a whole number";
@@ -159,7 +166,12 @@ Expectation expectation_of(const CLI::Option& option) {
     auto found = expectation_of_check(parts[i], number.empty() ? "a number" : number);
     if (!found.words.empty()) return found;
   }
-  if (parts.front() == "UINT") number += " of 0 or more";
+  if (parts.front() == "UINT") {
+    // A whole number that was rejected is too large.
+    number += is_whole(value)
+                  ? fmt::format(" from 0 to {}", std::numeric_limits<std::uint64_t>::max())
+                  : " of 0 or more";
+  }
   return {.words = number, .choices = {}};
 }
 
@@ -181,7 +193,7 @@ std::string value_in(const CLI::Option& option, std::string_view message) {
 }
 
 std::string expected_for(const CLI::Option& option, const std::string& value) {
-  const Expectation expected = expectation_of(option);
+  const Expectation expected = expectation_of(option, value);
   return fmt::format("{}: expected {}, found \"{}\".{}", option.get_name(),
                      expected.words.empty() ? "another value" : expected.words, value,
                      suggestion(value, expected.choices));
@@ -377,7 +389,7 @@ void check_numbers(CLI::App& program) {
     option->check(CLI::Validator(
         [option, type](const std::string& text) {
           if (is_number_of(type, text)) return std::string();
-          const auto words = expectation_of(*option).words;
+          const auto words = expectation_of(*option, text).words;
           return fmt::format("expected {}, found \"{}\"", words, text);
         },
         ""));

@@ -9,9 +9,11 @@
 #include "compat/core/shared_wait.h"
 #include "compat/server/facts_of.h"
 #include "compat/server/put_text.h"
+#include "compat/server/read_hand_path.h"
 #include "log/logger.h"
 #include "system/printable_text.h"
 #include "thimble/scene/scene_file.h"
+#include "thimble/scene/shipped_files.h"
 
 namespace thimble::compat {
 namespace {
@@ -26,6 +28,25 @@ ArmFacts known_facts(const ExecOptions& options, const ExecArm& arm) {
   }
   const auto read = scene::load_arm(file.empty() ? "vintage_phantom" : file);
   return read ? facts_of(*read) : ArmFacts{};
+}
+
+/// Reads all input files of the options, because the arms are opened later, if at all.
+driver::Result<void> check_inputs(const ExecOptions& options) {
+  for (const ExecArm& arm : options.arms) {
+    if (arm.arm_file.empty()) continue;
+    const auto found = scene::find_arm_file(arm.arm_file);
+    if (!found) return driver::Error{"--arm: " + found.error().message};
+    if (const auto read = scene::load_arm(*found); !read) return read.error();
+  }
+  if (!options.scene.empty()) {
+    const auto found = scene::find_scene(options.scene);
+    if (!found) return driver::Error{"--scene: " + found.error().message};
+    const auto read = scene::load_scene(*found, {.arm = options.arms.front().arm_file});
+    if (!read) return read.error();
+  }
+  if (options.hand == "path" || options.hand == "mouse") return {};
+  const auto hand = read_hand_path(options.hand);
+  return hand ? driver::Result<void>() : driver::Error{"--hand: " + hand.error().message};
 }
 
 std::string name_of(const ExecArm& arm) {
@@ -58,6 +79,7 @@ driver::Result<std::unique_ptr<ArmServer>> ArmServer::make(const ExecOptions& op
           "--clock virtual cannot be used with --view or --hand mouse. Remove one of them."};
     }
   }
+  if (auto readable = check_inputs(options); !readable) return readable.error();
   auto memory = session::SharedMemory::create_nameless(sizeof(Channel));
   if (!memory) return memory.error();
   return std::unique_ptr<ArmServer>(new ArmServer(options, stop, std::move(memory).value()));

@@ -39,7 +39,7 @@ driver::Result<std::vector<scene::HandWaypoint>> read_hand_path(const std::files
     fields >> station.time >> station.p_W.x() >> station.p_W.y() >> station.p_W.z();
     // Rejects NaN, too.
     const bool good = !fields.fail() && !(fields >> rest) && station.time >= 0 &&
-                      station.time <= kLatest && station.p_W.cwiseAbs().maxCoeff() <= kFarthest;
+                      station.time <= kLatest && (station.p_W.array().abs() <= kFarthest).all();
     if (!good) {
       return driver::Error{fmt::format(
           "{}:{}: expected \"t x y z\", a time from 0 to 86400 s and coordinates from -2 to 2 m.",

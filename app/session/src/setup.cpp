@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "arm/report_timeout.h"
 #include "log/logger.h"
 #include "scene_poses.h"
 #include "text_file.h"
@@ -311,7 +312,9 @@ driver::Result<void> Setup::open(std::size_t i) {
     if (!known.note.empty()) scene::logger().warn("{}", known.note);
     heat.at_start = known.heat;
   }
-  auto device = driver::Device::open(std::move(link), settings, clock_->now_ns());
+  auto device = driver::Device::open(
+      std::move(link), settings, clock_->now_ns(),
+      arm.real ? scene::kReportTimeout_ns : scene::report_timeout_ns(arm_file(i)));
   if (!device) return device.error();
   arm.device = std::move(device).value();
   if (arm.real && heat.named()) {

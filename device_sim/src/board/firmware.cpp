@@ -187,9 +187,10 @@ void Firmware::set_counters(const BoardCounters& counters, const Eigen::Vector3d
 }
 
 bool Firmware::countable() const noexcept {
-  const double max_gain = settings_.wiring.encoder_gain.cwiseAbs().maxCoeff();
-  return !misses_edges() && max_gain <= 1 && home_counts_.cwiseAbs().maxCoeff() < kCountable &&
-         preset_counts_.cwiseAbs().maxCoeff() < kCountable;
+  // Written so that NaN is not countable.
+  return !misses_edges() && (settings_.wiring.encoder_gain.array().abs() <= 1).all() &&
+         (home_counts_.array().abs() < kCountable).all() &&
+         (preset_counts_.array().abs() < kCountable).all();
 }
 
 void Firmware::watch(std::int64_t time_ns) noexcept {

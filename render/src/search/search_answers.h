@@ -116,7 +116,8 @@ inline Eigen::Vector3d far_along_x(const SearchFrame& frame, const Eigen::Vector
 /// Returns whether a point (steps) can be inside at all; false for NaN. One step of margin covers
 /// the rounding of the frame's middle.
 inline bool in_frame(const Eigen::Vector3d& p) noexcept {
-  return p.cwiseAbs().maxCoeff() <= kLatticeHalf + 1;
+  // Eigen's maximum does not detect NaN.
+  return (p.array().abs() <= kLatticeHalf + 1).all();
 }
 
 }  // namespace thimble::render

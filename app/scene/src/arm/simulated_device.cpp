@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "arm/report_timeout.h"
 #include "thimble/scene/device_settings.h"
 
 namespace thimble::scene {
@@ -26,7 +27,8 @@ Opened SimulatedDevice::open(const ArmFile& arm, const HandRoute& hand_W,
   opened->period_ns_ = std::llround(1e9 / options.rate);
   opened->simulation_ = std::move(simulation).value();
   auto device = driver::Device::open(opened->simulation_->link(opened->clock_),
-                                     device_settings(arm, options.rate), opened->clock_.now_ns());
+                                     device_settings(arm, options.rate), opened->clock_.now_ns(),
+                                     report_timeout_ns(arm));
   if (!device) return device.error();
   opened->device_ = std::move(device).value();
   return opened;

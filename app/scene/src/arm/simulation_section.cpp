@@ -1,5 +1,7 @@
 #include "arm/simulation_section.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +10,7 @@
 #include <string_view>
 
 #include "arm/nanoseconds.h"
+#include "board/wire_queue.h"
 #include "gravity_terms.h"
 #include "plant/link_mechanics.h"
 
@@ -54,6 +57,15 @@ void read_board(YamlMap& map, device_sim::SimulatedArmSettings& settings) {
   settings.wire.delay_out_ns = to_ns(wire.require_number("delay_out", "s", 0, 1));
   settings.wire.jitter_ns = to_ns(wire.optional_number("jitter", 0, "s", 0, 1));
   settings.wire.loss = wire.optional_number("loss", 0, "", 0, 0.99);
+  // In a fuller queue every report would be dropped before it arrives.
+  const std::int64_t in_flight_ns = static_cast<std::int64_t>(device_sim::WireQueue::kFrames) *
+                                    settings.firmware.report_period_ns;
+  if (settings.wire.delay_in_ns + settings.wire.jitter_ns >= in_flight_ns) {
+    wire.reject(
+        "delay_in",
+        fmt::format("expected less than {:g} s, with jitter: at most {} reports are in flight",
+                    1e-9 * static_cast<double>(in_flight_ns), device_sim::WireQueue::kFrames));
+  }
   wire.finish();
 }
 

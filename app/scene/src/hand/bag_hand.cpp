@@ -22,7 +22,7 @@ driver::Result<std::vector<HandWaypoint>> read_bag_hand(const std::filesystem::p
     HandWaypoint waypoint;
     waypoint.time = sample.time;
     waypoint.p_W = bag::in_world(axes, sample.value);
-    if (!(waypoint.p_W.cwiseAbs().maxCoeff() <= kDistanceMax)) {
+    if (!(waypoint.p_W.array().abs() <= kDistanceMax).all()) {
       return driver::Error{fmt::format(
           "{}: {} is {:.3g} m from the origin after {:g} s; expected positions in m, within 2 m.",
           bag.string(), read->name, waypoint.p_W.norm(), sample.time)};

@@ -54,8 +54,8 @@ LogFile::LogFile(std::filesystem::path path, Growth growth, std::string heading)
     : path_(std::move(path)), growth_(growth), heading_(std::move(heading)) {}
 
 void LogFile::open_it() {
-  const std::filesystem::path folder = path_.parent_path();
-  if (!folder.empty()) std::filesystem::create_directories(folder);
+  // The folder of a file that the user names must exist.
+  if (growth_ == Growth::kRotates) std::filesystem::create_directories(path_.parent_path());
   // The log is not locked: several processes may append to it, and each line has its process
   // number.
   if (auto may = check(path_); !may) throw std::runtime_error(may.error().message);

@@ -142,7 +142,7 @@ const OutputKind kPlotData{.name = "data of a plot", .matches = is_anything};
 const OutputKind& kind_of_name(const path& file) {
   const std::string ending = lower(file.extension().string());
   const bool of_plots = ending == ".dat" || ending == ".gp" || ending == ".rgb";
-  if (of_plots && file.parent_path().filename() == "data") return kPlotData;
+  if (of_plots && file.parent_path().filename() == kDataFolder) return kPlotData;
   if (ending == ".csv") return kTable;
   if (ending == ".png") return kPng;
   if (ending == ".svg") return kSvg;

@@ -47,6 +47,9 @@ THIMBLE_EXPORT extern const OutputKind kPlainText;
 /// Data of plots, in the subfolder that only Thimble writes.
 extern const OutputKind kPlotData;
 
+/// Subfolder of a folder of results for the data of its plots.
+inline constexpr const char* kDataFolder = "data";
+
 /// Returns the kind of a file in a folder of results, by its extension.
 THIMBLE_EXPORT const OutputKind& kind_of_name(const std::filesystem::path& file);
 

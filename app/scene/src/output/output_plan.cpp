@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "output/output_file.h"
+#include "output/output_kind.h"
 
 namespace thimble::output {
 namespace {
@@ -59,8 +60,8 @@ void OutputPlan::check(const std::string& option, const fs::path& path, const Ou
 }
 
 void OutputPlan::write_folder(const std::string& option, const fs::path& path,
-                              const std::vector<std::string>& names) {
-  if (!path.empty()) outputs_.push_back({option, path, nullptr, Use::kFolder, false, names});
+                              const std::vector<std::string>& names, bool plots) {
+  if (!path.empty()) outputs_.push_back({option, path, nullptr, Use::kFolder, false, names, plots});
 }
 
 void OutputPlan::write_new_folder(const std::string& option, const fs::path& path) {
@@ -87,7 +88,14 @@ driver::Result<void> OutputPlan::make_folder(const Output& output) {
   auto lock = FolderLock::take(folder);
   if (!lock) return lock.error();
   locks_.push_back(std::move(lock).value());
-  return check_writable(folder);
+  if (auto writable = check_writable(folder); !writable) return writable;
+  if (!output.plots) return {};
+  const fs::path data = output.path / kDataFolder;
+  if (fs::symlink_status(data, failed).type() == fs::file_type::not_found) return {};
+  if (!fs::is_directory(data, failed)) {
+    return cannot_write(data, "it is not a folder. Remove it, or name another folder.");
+  }
+  return check_writable(data);
 }
 
 driver::Result<void> OutputPlan::add_places(const Output& output,

@@ -31,9 +31,10 @@ class THIMBLE_EXPORT OutputPlan {
   /// As `write`, for a file that its writer opens before the work begins: it is checked only.
   void check(const std::string& option, const std::filesystem::path& path, const OutputKind& kind,
              bool replace = false);
-  /// Adds a folder of results. `names`: files written there, which may exist.
+  /// Adds a folder of results. `names`: files written there, which may exist. `plots`: true if
+  /// plots are drawn there, whose data need a subfolder (kDataFolder).
   void write_folder(const std::string& option, const std::filesystem::path& path,
-                    const std::vector<std::string>& names);
+                    const std::vector<std::string>& names, bool plots = true);
   /// Adds a folder that must be new or empty.
   void write_new_folder(const std::string& option, const std::filesystem::path& path);
 
@@ -50,6 +51,7 @@ class THIMBLE_EXPORT OutputPlan {
     Use use;
     bool replace = false;
     std::vector<std::string> names = {};  // Names in a folder.
+    bool plots = false;                   // Plots are drawn in the folder.
     bool begun = false;
   };
   struct Place {

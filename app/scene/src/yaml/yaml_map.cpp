@@ -105,7 +105,7 @@ bool YamlMap::read_number(const Entry& entry, const YAML::Node& node, const std:
     return true;
   }
   mistakes_->add(line_of(node, entry.line),
-                 entry.key + ": expected " + what + ", found " + found(node));
+                 entry.key + ": expected " + what + ", found " + found_value(node));
   return false;
 }
 
@@ -117,7 +117,7 @@ bool YamlMap::read_whole(const Entry& entry, const YAML::Node& node, const std::
     return true;
   }
   mistakes_->add(line_of(node, entry.line),
-                 entry.key + ": expected " + what + ", found " + found(node));
+                 entry.key + ": expected " + what + ", found " + found_value(node));
   return false;
 }
 
@@ -203,8 +203,9 @@ std::array<std::int64_t, 3> YamlMap::require_signs(std::string_view key) {
       signs[i] = *sign;
       continue;
     }
-    mistakes_->add(line_of(entry->value[i], entry->line),
-                   entry->key + ": expected each to be 1 or -1, found " + found(entry->value[i]));
+    mistakes_->add(
+        line_of(entry->value[i], entry->line),
+        entry->key + ": expected each to be 1 or -1, found " + found_value(entry->value[i]));
     return {1, 1, 1};
   }
   return signs;
@@ -329,7 +330,8 @@ bool YamlMap::optional_bool(std::string_view key, bool fallback) {
     if (entry->value.Scalar() == "true") return true;
     if (entry->value.Scalar() == "false") return false;
   }
-  expected(*entry, "true or false");
+  mistakes_->add(line_of(entry->value, entry->line),
+                 entry->key + ": expected true or false, found " + found_value(entry->value));
   return fallback;
 }
 

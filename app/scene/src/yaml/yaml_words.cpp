@@ -49,6 +49,15 @@ std::string found(const YAML::Node& node) {
   return "nothing";
 }
 
+std::string found_value(const YAML::Node& node) {
+  const bool quoted = node.IsScalar() && !is_plain_scalar(node);
+  if (!quoted) return found(node);
+  const YAML::Node plain(node.Scalar());
+  const std::string& text = plain.Scalar();
+  const bool is_value = to_number(plain) || text == "true" || text == "false";
+  return found(node) + (is_value ? ", a text because of its quotes; remove the quotes" : "");
+}
+
 std::string in_words(double number) {
   std::ostringstream text;
   text << number;

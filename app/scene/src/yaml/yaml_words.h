@@ -23,6 +23,10 @@ std::string in_quotes(std::string_view text);
 /// Returns a description of a node: "a map", or its text in quotes.
 std::string found(const YAML::Node& node);
 
+/// As `found`, for a node that should be a number, true or false. Names the quotes if they alone
+/// make it a text.
+std::string found_value(const YAML::Node& node);
+
 /// Returns a number in its usual notation.
 std::string in_words(double number);
 

@@ -40,7 +40,7 @@ RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& rec
   figures.home_needed = device.home_needed();
   figures.zero_assured = device.zero_assured();
   if (const auto* simulation = setup.simulation(arm)) {
-    figures.current_at_exit = simulation->currents().cwiseAbs().maxCoeff();
+    figures.current_at_exit = simulation->currents().cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
   }
   if (records.kept) {
     const Trace& trace = records.kept->trace;

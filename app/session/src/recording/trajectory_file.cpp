@@ -96,9 +96,11 @@ driver::Result<std::vector<TrajectoryPoint>> read_trajectory(const std::filesyst
     const TrajectoryPoint point{.time = form.seconds * values[0],
                                 .p = form.metres * Eigen::Vector3d(values[1], values[2], values[3]),
                                 .f = {values[4], values[5], values[6]}};
-    // Written so that NaN is rejected.
-    if (!(point.p.cwiseAbs().maxCoeff() < form.farthest && point.f.norm() < kStrongest &&
-          std::isfinite(point.time))) {
+    if (!std::isfinite(point.time)) return wrong("the time is not a finite number.");
+    if (!point.p.allFinite() || !point.f.allFinite()) {
+      return wrong("a position or force is not a finite number.");
+    }
+    if (!((point.p.array().abs() < form.farthest).all() && point.f.norm() < kStrongest)) {
       return wrong(
           "is too far away (10 m) or too strong (10 kN); set the unit of length with --length.");
     }

@@ -71,7 +71,9 @@ driver::Result<ModalMotion<kDof>> ModalMotion<kDof>::build(const SpringNetwork<k
     const MatrixXd by_mode = shapes.transpose() * c * shapes;
     rates = by_mode.diagonal();
     const MatrixXd joined = by_mode - MatrixXd(rates.asDiagonal());
-    if (!(joined.cwiseAbs().maxCoeff() <= kJoined * rates.cwiseAbs().maxCoeff())) {
+    // Written so that NaN is refused.
+    if (!(joined.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <=
+          kJoined * rates.cwiseAbs().maxCoeff<Eigen::PropagateNaN>())) {
       return driver::Error{
           "The dampers of this body couple its modes, so modal motion would not be exact. Give "
           "each "

@@ -323,6 +323,21 @@ TEST_F(OutputPlanTest, FileIsRejectedAsFolder) {
   EXPECT_FALSE(plan.begin());
 }
 
+TEST_F(OutputPlanTest, DataFolderOfPlotsIsCheckedAtOnce) {
+  {
+    OutputPlan plan;
+    plan.write_folder("--report", folder_, {});
+    EXPECT_TRUE(plan.begin());
+  }
+  file("data", "in the way");
+  OutputPlan plan;
+  plan.write_folder("--report", folder_, {});
+  const auto begun = plan.begin();
+  ASSERT_FALSE(begun);
+  EXPECT_TRUE(holds(begun.error().message, "--report")) << begun.error().message;
+  EXPECT_TRUE(holds(begun.error().message, "data")) << begun.error().message;
+}
+
 TEST_F(OutputPlanTest, NewFolderMustBeEmpty) {
   file("precious", "x");
   OutputPlan plan;

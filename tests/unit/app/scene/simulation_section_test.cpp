@@ -10,6 +10,7 @@
 
 #include "support/scratch.h"
 #include "thimble/scene/arm_simulation.h"
+#include "thimble/scene/simulated_device.h"
 
 namespace thimble::scene {
 namespace {
@@ -101,6 +102,27 @@ TEST(SimulationSection, ReadsFaultsOfWireAndEncoders) {
       {{"    report_period: 0.001", "    missed_edges: 0.001\n    report_period: 0.001"}});
   ASSERT_TRUE(edges.ok()) << edges.error().message;
   EXPECT_EQ(edges->simulated.firmware.missed_edges, 0.001);
+}
+
+TEST(SimulationSection, RejectsADelayByWhichNoReportArrives) {
+  EXPECT_EQ(mistake_with("delay_in: 0 ", "delay_in: 0.25 "), "");
+  for (const char* late : {"delay_in: 1 ", "delay_in: 0.256 ", "delay_in: 0.2, jitter: 0.1 "}) {
+    std::string wire = late;
+    if (const auto comma = wire.find(", "); comma != std::string::npos) {
+      wire.replace(comma, 2, "\n    ");
+    }
+    const std::string mistake = mistake_with("delay_in: 0 ", wire);
+    EXPECT_NE(mistake.find("delay_in: expected less than 0.256 s"), std::string::npos)
+        << late << " -> " << mistake;
+  }
+}
+
+TEST(SimulationSection, ArmWithALateWireOpens) {
+  const auto arm =
+      read_with({{"report_period: 0.001", "report_period: 0.1"}, {"delay_in: 0 ", "delay_in: 1 "}});
+  ASSERT_TRUE(arm) << arm.error().message;
+  const auto opened = SimulatedDevice::open(*arm, {{0.0, Eigen::Vector3d::Zero()}}, {});
+  EXPECT_TRUE(opened) << opened.error().message;
 }
 
 TEST(SimulationSection, RejectsAnInconsistentDriveTrain) {

@@ -49,7 +49,16 @@ TEST(Trajectory, ErrorsNameLineAndRemedy) {
   EXPECT_NE(mistake("0 0 0 0\n1 0 x 0\n").find("line 2: expected only numbers"), std::string::npos);
   EXPECT_NE(mistake("1 0 0 0\n0 0 0 0\n").find("the time decreases"), std::string::npos);
   EXPECT_NE(mistake("0 0 0 0\n1 99 0 0\n").find("--length"), std::string::npos);
-  EXPECT_NE(mistake("0 0 0 0\n1 nan 0 0\n").find("line 2"), std::string::npos);
+  for (const char* line : {"1 nan 0 0", "1 0 nan 0", "1 0 0 nan", "1 0 0 inf"}) {
+    const std::string message = mistake("0 0 0 0\n" + std::string(line) + "\n2 0 0 0\n");
+    EXPECT_NE(message.find("line 2: a position or force is not a finite number"), std::string::npos)
+        << line << " -> " << message;
+  }
+  for (const char* line : {"nan 0 0 0", "inf 0 0 0"}) {
+    const std::string message = mistake("0 0 0 0\n" + std::string(line) + "\n2 0 0 0\n");
+    EXPECT_NE(message.find("line 2: the time is not a finite number"), std::string::npos)
+        << line << " -> " << message;
+  }
   EXPECT_NE(mistake("0 0 0 0\n").find("fewer than two points"), std::string::npos);
   EXPECT_NE(mistake("0 0 0 0\n", {.columns = "t x y"}).find("--columns"), std::string::npos);
   EXPECT_NE(mistake("0 0 0 0\n", {.columns = "t x y z fx"}).find("--columns"), std::string::npos);

@@ -19,6 +19,8 @@ std::string mistakes_in(const std::string& text) {
   file->root().optional_vector3("place", Eigen::Vector3d::Zero(), "m", -1, 1);
   file->root().optional_rotation("rotate_degrees");
   if (file->root().has("kind")) file->root().require_choice("kind", {"quantised", "ideal"});
+  if (file->root().has("count")) file->root().require_whole("count", "", 0, 10);
+  file->root().optional_bool("repair", false);
   if (file->root().has("parts")) {
     for (scene::YamlMap& part : file->root().require_maps("parts")) {
       part.require_number("mass", "kg", 0, 1);
@@ -49,6 +51,22 @@ TEST(YamlReader, RejectsValuesThatAreNotFiniteOrInRange) {
         said.starts_with("arm.yaml:1: stiffness: expected a number from 0 to 100000 N/m, found "))
         << value << " -> " << said;
     EXPECT_EQ(said.find('\n'), std::string::npos) << value;
+  }
+}
+
+TEST(YamlReader, NamesQuotesAsTheCauseThatAValueIsAText) {
+  const std::string cause = "; remove the quotes.";
+  EXPECT_EQ(mistakes_in("stiffness: \"800\"\n"),
+            "arm.yaml:1: stiffness: expected a number from 0 to 100000 N/m, found \"800\", a text "
+            "because of its quotes" +
+                cause);
+  EXPECT_TRUE(mistakes_in("stiffness: 1\nplace: [0, '0.5', 0]\n").ends_with(cause));
+  EXPECT_TRUE(mistakes_in("stiffness: 1\ncount: '7'\n").ends_with(cause));
+  EXPECT_TRUE(mistakes_in("stiffness: 1\nrepair: 'true'\n").ends_with(cause));
+  for (const char* other : {"stiff", "'stiff'", "900000", "[\"800\"]"}) {
+    EXPECT_EQ(mistakes_in("stiffness: " + std::string(other) + "\n").find("quotes"),
+              std::string::npos)
+        << other;
   }
 }
 
