@@ -77,7 +77,8 @@ driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file, MeshFi
   };
   std::error_code status;
   if (std::filesystem::is_directory(file, status)) {
-    return error(std::string("is a folder; expected an ") + kMeshEndings + " file.");
+    return error(std::string("this is not a file but a folder; expected an ") + kMeshEndings +
+                 " file.");
   }
   const std::string ending = ending_of(file);
   if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end()) {
