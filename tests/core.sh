@@ -4,19 +4,28 @@
 #     (nothing)  configures a build without each single part; builds the preset core in an empty folder, prints the
 #                seconds, touches a scene with it, calls missing commands, and builds programs with its installed libraries;
 #                then the same with shared libraries (shared.sh)
-#     --each     also builds the program without each single part (an hour)
+#     --each     also builds the program without each single part, and the tests of app that follow the option (over an
+#                hour)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source=$PWD
 source tests/build_check.sh
 empty_folder "$source/build/core_test"
 
-for part in MESH_FORMATS RECORDINGS BAGS VIEW WEB STUDIES COMMISSIONING COMPAT ROS2 PYTHON MPI BENCHMARKS TESTS; do
+# Options whose tests are in programs that link other parts too.
+tested_without="MESH_FORMATS RECORDINGS BAGS WEB"
+for part in BUILD_APP MESH_FORMATS RECORDINGS BAGS VIEW WEB STUDIES COMMISSIONING COMPAT ROS2 PYTHON MPI BENCHMARKS TESTS; do
   echo "Configuring without THIMBLE_$part ..."
   quiet "$part" cmake --preset release -B "$work/$part" -D "THIMBLE_$part=OFF"
   if [ "${1:-}" = --each ]; then
-    quiet "$part" cmake --build "$work/$part" --parallel "$(nproc)" --target thimble
-    quiet "$part" "$work/$part/app/thimble" run box --duration 0.3 --no-view
+    case $part in
+      BUILD_APP) targets="thimble_render tests_driver" ;;
+      *) targets=thimble ;;
+    esac
+    [[ " $tested_without " != *" $part "* ]] || targets+=" tests_app"
+    # shellcheck disable=SC2086
+    quiet "$part" cmake --build "$work/$part" --parallel "$(nproc)" --target $targets
+    [ "$part" = BUILD_APP ] || quiet "$part" "$work/$part/app/thimble" run box --duration 0.3 --no-view
   fi
   rm -rf "${work:?}/$part"
 done
@@ -49,6 +58,9 @@ lacks COMPAT exec true
 lacks RECORDINGS run box --duration 0.2 --no-view --record run.h5
 touch some.dae some.db3
 lacks MESH_FORMATS mesh some.dae
+lacks BAGS replay some.db3 --scene box
+lacks WEB view --web --for 1
+lacks ROS2 run box --duration 0.2 --no-view --ros2
 echo "Building programs on the installed libraries ..."
 quiet install cmake --install "$work/core" --prefix "$work/usr" --component dev
 mkdir -p driver_only

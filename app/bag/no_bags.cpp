@@ -7,8 +7,8 @@ namespace {
 
 driver::Error none(const std::filesystem::path& path) {
   return {path.string() +
-          ": built without ROS bag support, because libsqlite3-dev was missing; install it and "
-          "rebuild."};
+          ": ROS bags are not part of this build. Install libsqlite3-dev and build again with "
+          "-D THIMBLE_BAGS=ON."};
 }
 
 }  // namespace

@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
+#include "text/counted.h"
+
 namespace thimble::bringup {
 
 std::string ReportStatistics::text() const {
   return fmt::format(
-      "{:.0f} reports per second; {} ticks had no report, {} reports skipped, {} rejected, {} "
-      "messages refused.",
-      static_cast<double>(reports) / seconds, missing, skipped, rejected, refused);
+      "{:.0f} reports per second; {} had no report, {} skipped, {} rejected, {} refused.",
+      static_cast<double>(reports) / seconds, scene::counted(missing, "tick"),
+      scene::counted(skipped, "report"), rejected, scene::counted(refused, "message"));
 }
 
 ReportStatistics listen(BenchArm& bench, double seconds, const std::atomic<bool>& stop) {

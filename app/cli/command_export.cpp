@@ -10,6 +10,7 @@
 #include "log/printed_text.h"
 #include "output/output_plan.h"
 #include "recording/bag_export.h"
+#include "text/counted.h"
 #include "thimble/session/recording.h"
 #include "view/feedback/touch_sound.h"
 #include "view/feedback/wav_file.h"
@@ -34,7 +35,8 @@ int export_recording(const ExportOptions& options) {
   const auto recording = session::read_recording(options.file);
   if (!recording) return report_error(recording.error(), kExitBadInput);
   const auto report_file = [&recording](const std::string& file) {
-    scene::print_format("%s: %zu ticks of %s at %g Hz%s.\n", file.c_str(), recording->ticks.size(),
+    scene::print_format("%s: %s of %s at %g Hz%s.\n", file.c_str(),
+                        scene::counted(recording->ticks.size(), "tick").c_str(),
                         recording->info.scene.c_str(), recording->info.rate,
                         recording->complete ? "" : "; the recording was cut off");
   };

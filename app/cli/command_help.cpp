@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +13,7 @@
 #include "keys/key_schema.h"
 #include "log/printed_text.h"
 #include "scene_keys.h"
+#include "yaml/renamed_keys.h"
 
 namespace thimble::cli {
 namespace {
@@ -25,12 +29,29 @@ driver::Result<std::vector<scene::KeyNote>> keys_of(const std::string& file) {
   return scene::scene_keys();
 }
 
+/// Returns the error for a key that has a new name; empty if it has none in this kind of file.
+std::string renamed(const HelpOptions& options, const std::vector<scene::KeyNote>& keys) {
+  for (const scene::RenamedKey& one : scene::kRenamedKeys) {
+    const bool here = std::any_of(keys.begin(), keys.end(), [&one](const scene::KeyNote& key) {
+      return key.place == one.place && key.key == one.is;
+    });
+    if (!here || one.was != options.key) continue;
+    return fmt::format(
+        "KEY: \"{0}\" is the old name of {1} ({2}). Use the new name; `thimble help {3} {1}` "
+        "explains it.",
+        one.was, one.is, one.place, options.file);
+  }
+  return {};
+}
+
 int print_keys(const HelpOptions& options) {
   const auto keys = keys_of(options.file);
   if (!keys) return report_error(keys.error(), kExitBadInput);
   const std::string text =
       options.page ? scene::key_page(*keys) : scene::key_text(*keys, options.key);
   if (text.empty()) {
+    const std::string old = renamed(options, *keys);
+    if (!old.empty()) return report_error(driver::Error{old}, kExitBadInput);
     std::vector<std::string> names;
     for (const scene::KeyNote& key : *keys) names.push_back(key.key);
     return report_error(driver::Error{"KEY: there is no key \"" + options.key + "\" in " +

@@ -22,6 +22,7 @@
 #include "output/output_plan.h"
 #include "report/mesh_json.h"
 #include "report/pictures.h"
+#include "text/counted.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/repair_mesh.h"
@@ -207,8 +208,9 @@ int describe_pages(const MeshOptions& options, Json& json) {
   json["touchable"] = damaged == 0;
   if (damaged > 0) {
     scene::print_format(
-        "%zu pages are damaged and would be holes in the surface. Write the file again.\n",
-        damaged);
+        "%s and would be holes in the surface. Write the file again.\n",
+        (scene::counted(damaged, "page") + (damaged == 1 ? " is damaged" : " are damaged"))
+            .c_str());
     return kExitBadInput;
   }
   scene::print_format("Page file OK: all pages are intact.\n");
@@ -219,6 +221,11 @@ int describe_mesh_file(const MeshOptions& options, Json& json) {
   if (!options.repair.empty() && std::filesystem::path(options.repair).extension() != ".off") {
     return report_error({"--repair: " + options.repair +
                          ": meshes are written as OFF. Use a file name that ends in .off."},
+                        kExitBadInput);
+  }
+  if (options.file.starts_with("cgal:")) {
+    return report_error({options.file + ": names with cgal: can be used only in scenes. Give the "
+                                        "path of the file; its folder is usually build/meshes."},
                         kExitBadInput);
   }
   output::OutputPlan plan;

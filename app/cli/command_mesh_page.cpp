@@ -12,6 +12,7 @@
 #include "mesh/contact_mesh.h"
 #include "output/output_file.h"
 #include "output/output_plan.h"
+#include "text/counted.h"
 #include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::cli {
@@ -38,9 +39,11 @@ int page_mesh(const PageOptions& options) {
     return report_error(file->named(written.error()), kExitTrouble);
   }
   if (const auto done = file->commit(); !done) return report_error(done.error(), kExitTrouble);
-  scene::print_format(
-      "%s: %d triangles in %d pages.\n", options.out.c_str(), surface->triangle_count(),
-      (surface->triangle_count() + render::kPageTriangles - 1) / render::kPageTriangles);
+  const auto pages =
+      (surface->triangle_count() + render::kPageTriangles - 1) / render::kPageTriangles;
+  scene::print_format("%s: %s in %s.\n", options.out.c_str(),
+                      scene::counted(surface->triangle_count(), "triangle").c_str(),
+                      scene::counted(pages, "page").c_str());
   return kExitDone;
 }
 

@@ -20,6 +20,7 @@
 #include "recording/trajectory_file.h"
 #include "report/html/touch_page.h"
 #include "system/regular_file.h"
+#include "text/counted.h"
 #include "thimble/session/recording.h"
 
 namespace thimble::cli {
@@ -48,10 +49,10 @@ bool is_recording(const std::string& file) {
 }
 
 void print_comparison(const std::string& file, const session::TrajectoryComparison& compared,
-                      const std::string& scene, bool forces) {
-  scene::print_format(
-      "%s: %zu ticks of %s along the trajectory, %zu in contact; force %.4g N (RMS)", file.c_str(),
-      compared.ticks, scene.c_str(), compared.touching, compared.force_rms);
+                      const std::string& name, bool forces) {
+  scene::print_format("%s: %s of %s along the trajectory, %zu in contact; force %.4g N (RMS)",
+                      file.c_str(), scene::counted(compared.ticks, "tick").c_str(), name.c_str(),
+                      compared.touching, compared.force_rms);
   if (!forces) {
     scene::print_format(".\n");
     return;
@@ -63,9 +64,9 @@ void print_comparison(const std::string& file, const session::TrajectoryComparis
                         100 * compared.error_rms / compared.recorded_rms);
   }
   scene::print_format(
-      "; direction error below %.3g degrees in 99 %% of %zu ticks; contact differs in %zu.\n",
-      compared.direction_p99 * 180 / std::numbers::pi, compared.directions,
-      compared.contact_disagrees);
+      "; direction error below %.3g degrees in 99 %% of %s; contact differs in %zu.\n",
+      compared.direction_p99 * 180 / std::numbers::pi,
+      scene::counted(compared.directions, "tick").c_str(), compared.contact_disagrees);
 }
 
 /// Touches a scene along the probe positions of a trajectory file.
@@ -128,8 +129,8 @@ int replay_a_bag(const ReplayOptions& options) {
 /// Prints how the forces of one hand compare with the recorded ones.
 void print_replay(const std::string& file, const session::Replay& replay) {
   const session::ReplayComparison& compared = replay.compared;
-  session::print(stdout, "{}: {} ticks of {} with the recorded motion; ", file, compared.ticks,
-                 replay.felt.info.scene);
+  session::print(stdout, "{}: {} of {} with the recorded motion; ", file,
+                 scene::counted(compared.ticks, "tick"), replay.felt.info.scene);
   if (compared.differing == 0) {
     session::print(stdout, "all forces are bit-identical to the recorded ones.\n");
   } else {

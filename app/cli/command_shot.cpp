@@ -17,9 +17,10 @@
 #include "log/printed_text.h"
 #include "output/output_plan.h"
 #include "print.h"
+#include "text/counted.h"
 #include "thimble/scene/scene_file.h"
 #include "view/gl/animated_picture_file.h"
-#include "view/gl/film_file.h"
+#include "view/gl/animation_file.h"
 #include "view/gl/offscreen_context.h"
 #include "view/gl/picture_file.h"
 #include "view/shot.h"
@@ -73,8 +74,8 @@ bool is_png(const std::filesystem::path& file) {
   return file.extension() == ".png" || file.extension() == ".PNG";
 }
 
-/// Returns what is wrong with the names of the pictures, or with a film's pace; empty if nothing
-/// is.
+/// Returns what is wrong with the names of the pictures, or with an animation's pace; empty if
+/// nothing is.
 std::string output_error(const ShotOptions& options) {
   if (!options.out.empty() && !is_png(options.out)) {
     return "--out: expected a file name that ends in .png, found " + options.out + ".";
@@ -113,16 +114,16 @@ std::string span_error(const ShotOptions& options, double at) {
 /// Writes the pictures in the format given by the file's ending, and prints what was written.
 int write_animation(const std::vector<view::Picture>& pictures, const ShotOptions& options) {
   const double frame_time = 1 / options.pace;
-  const bool film = view::is_animation(options.animate);
-  const auto written = film ? view::write_film(pictures, frame_time, options.animate)
-                            : view::write_animated_png(pictures, frame_time, options.animate);
+  const bool by_ffmpeg = view::is_animation(options.animate);
+  const auto written = by_ffmpeg ? view::write_animation(pictures, frame_time, options.animate)
+                                 : view::write_animated_png(pictures, frame_time, options.animate);
   if (!written) return report_error(written.error(), kExitTrouble);
   std::error_code unknown;
   const std::uintmax_t bytes = std::filesystem::file_size(options.animate, unknown);
-  session::print(stdout, "Animation: {} ({}, {} pictures of {} x {}, {:.3g} s{})\n",
-                 options.animate, film ? "by ffmpeg" : "animated PNG", pictures.size(),
-                 pictures.front().width, pictures.front().height,
-                 frame_time * static_cast<double>(pictures.size()),
+  session::print(stdout, "Animation: {} ({}, {} of {} x {}, {:.3g} s{})\n", options.animate,
+                 by_ffmpeg ? "by ffmpeg" : "animated PNG",
+                 scene::counted(pictures.size(), "picture"), pictures.front().width,
+                 pictures.front().height, frame_time * static_cast<double>(pictures.size()),
                  unknown ? std::string() : fmt::format(", {} kB", (bytes + 999) / 1000));
   return kExitDone;
 }

@@ -21,6 +21,7 @@
 #include "share/steer/save_knobs.h"
 #include "share/turn_knob.h"
 #include "signals.h"
+#include "text/counted.h"
 #include "thimble/scene/shipped_files.h"
 #include "web/web_server.h"
 
@@ -161,7 +162,7 @@ void print_line(const session::SharedReader& reader) {
     scene::print_format("%.3f s, force %.2f N, depth %.2f mm, ",
                         1e-9 * static_cast<double>(tick.time_ns), force, 1e3 * tick.depth);
   }
-  scene::print_format("%llu ticks, %llu missed", static_cast<unsigned long long>(counters.ticks),
+  scene::print_format("%s, %llu missed", scene::counted(counters.ticks, "tick").c_str(),
                       static_cast<unsigned long long>(counters.missed));
   if (counters.paused > 0) {
     scene::print_format(", %llu paused", static_cast<unsigned long long>(counters.paused));
@@ -206,14 +207,14 @@ int print_states(const ViewOptions& options) {
 
 /// Shows a run in browsers on this computer.
 int serve(const ViewOptions& options) {
-  if (auto libraries = report::read_page_libraries(); !libraries) {
-    return report_error(libraries.error(), kExitBadInput);
-  }
   const std::atomic<bool>& stop = scene::catch_interrupts();
   session::RunAttachment runs(options.run());
   const session::SharedReader* watched = nullptr;
   auto server = web::WebServer::listen(runs, options.port);
   if (!server) return report_error(server.error(), kExitBadInput);
+  if (auto libraries = report::read_page_libraries(); !libraries) {
+    return report_error(libraries.error(), kExitBadInput);
+  }
   scene::print_format("Open %s\n", (*server)->address().c_str());
   std::string last_notice;
   const auto end =

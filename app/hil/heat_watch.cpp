@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "text/counted.h"
+
 namespace thimble::hil {
 namespace {
 
@@ -135,7 +137,8 @@ std::string HeatWatch::text() const {
                         100 * apart_));
   const auto lowered = bench_.device().heat().lowered() - lowered_before_;
   if (lowered > 0)
-    text += fmt::format(" The force was reduced because of heat in {} ticks.", lowered);
+    text += fmt::format(" The force was reduced because of heat in {}.",
+                        scene::counted(lowered, "tick"));
   if (over_ > 1) {
     text += fmt::format(" A motor received {:.2f} times the current that its heat allows.", over_);
   }

@@ -24,20 +24,30 @@ namespace {
 constexpr double kHourOfFull = 60, kMinutesOfQuick = 0.5;
 constexpr int kOpened = 3;  // a wire that is not closed properly shows when it is reopened
 
+/// Returns what was heard after each opening of the arm; equal texts once.
+std::string text_of_openings(const std::vector<std::string>& texts) {
+  const bool equal = std::all_of(texts.begin(), texts.end(),
+                                 [&](const std::string& text) { return text == texts.front(); });
+  if (equal) return "Opened three times, each with the same result: " + texts.front();
+  std::string all = "Opened three times:";
+  for (const std::string& text : texts) all += ' ' + text;
+  return all;
+}
+
 HilResult check_reports(const HilRig& rig, double seconds) {
   constexpr const char* kName = "reports";
-  std::string text;
+  std::vector<std::string> texts;
   std::vector<session::Figure> figures;
   for (int i = 1; i <= kOpened; ++i) {
     auto bench = rig.open(TipHold::kFree);
     if (!bench) return broken_off(kName, bench.error().message, nullptr);
     const bringup::ReportStatistics heard = bringup::listen(**bench, seconds, rig.stop);
     if (!heard.whole) return broken_off(kName, heard.text(), bench->get());
-    text += (text.empty() ? "" : " ") + heard.text();
+    texts.push_back(heard.text());
     figures.push_back({fmt::format("reports_are_good_{}", i), heard.good() ? 1.0 : 0.0, "", "== 1",
                        heard.text()});
   }
-  return judged(kName, "Opened three times: " + text, std::move(figures));
+  return judged(kName, text_of_openings(texts), std::move(figures));
 }
 
 HilResult check_feel(const HilRig& rig, const HilOptions& options) {

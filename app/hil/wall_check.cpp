@@ -69,7 +69,7 @@ HilResult check_stiffest_wall(const HilRig& rig, bool full) {
        {"wall_over_twin_low", ratio.low, "", "", "95 % interval"},
        {"wall_over_twin_high", ratio.high, "", "", "95 % interval"},
        {"energy_given", 1e3 * found->max_energy_given, "mJ", "", "by the wall that added most"},
-       {"force_most", found->max_force, "N", fmt::format("<= {:g}", kHilForceMax), ""}});
+       {"max_force", found->max_force, "N", fmt::format("<= {:g}", kHilForceMax), ""}});
 }
 
 }  // namespace thimble::hil

@@ -54,7 +54,7 @@ driver::Result<RosModule> load_module() {
     return driver::Error{
         "ROS 2 topics require the module thimble-ros2.so, which was not found. Install the package "
         "thimble-ros2. In a build from source, install cyclonedds-dev and cyclonedds-tools, run "
-        "cmake again, and build the target thimble_ros2."};
+        "cmake again with -D THIMBLE_ROS2=ON, and build the target thimble_ros2."};
   }
   void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (module == nullptr) {

@@ -11,6 +11,7 @@
 #include "ros2/ros_scene.h"
 #include "run_records.h"
 #include "setup.h"
+#include "text/counted.h"
 #include "thimble/driver/device.h"
 #include "thimble/scene/scene_file.h"
 
@@ -81,24 +82,27 @@ void RosRun::take(const driver::TickRecord& record) noexcept {
 
 std::string RosRun::report() const {
   const RosCounts& counts = channel_.counts;
-  std::string s = fmt::format("ROS 2     {} ticks published", counts.published.load());
-  if (law_) s += fmt::format("; {} forces received, {} limited", counts.taken.load(), law_->cut());
+  std::string s =
+      fmt::format("ROS 2     {} published", scene::counted(counts.published.load(), "tick"));
+  if (law_)
+    s += fmt::format("; {} received, {} limited", scene::counted(counts.taken.load(), "force"),
+                     law_->cut());
   if (options_.lead_hand)
-    s += fmt::format("; {} hand targets received", counts.hand_targets.load());
+    s += fmt::format("; {} received", scene::counted(counts.hand_targets.load(), "hand target"));
   s += ".\n";
-  const auto add_line = [&s](std::uint64_t number, const char* what) {
-    if (number > 0) s += fmt::format("ROS 2     {} {}\n", number, what);
+  const auto add_line = [&s](std::uint64_t number, const char* noun, const char* what) {
+    if (number > 0) s += fmt::format("ROS 2     {} {}\n", scene::counted(number, noun), what);
   };
-  add_line(counts.skipped.load(), "messages skipped, because newer ones had arrived.");
-  add_line(counts.not_finite.load(), "messages refused, because a number was not finite.");
-  add_line(counts.wrong_frame.load(),
-           "messages refused, because their frame was not the world frame.");
-  add_line(targets_refused_, "hand targets refused, because the arm could not reach them.");
-  add_line(counts.with_torque.load(),
-           "forces had a torque, which was ignored: the arm has no motor for it.");
+  add_line(counts.skipped.load(), "message", "skipped, because newer ones had arrived.");
+  add_line(counts.not_finite.load(), "message", "refused, because a number was not finite.");
+  add_line(counts.wrong_frame.load(), "message",
+           "refused, because their frame was not the world frame.");
+  add_line(targets_refused_, "hand target", "refused, because the arm could not reach them.");
+  add_line(counts.with_torque.load(), "force",
+           "had a torque, which was ignored: the arm has no motor for it.");
   if (!law_) return s;
-  add_line(law_->stalls(),
-           "times a force was not renewed in time; it was zero until the next one.");
+  add_line(law_->stalls(), "time",
+           "a force was not renewed in time; it was zero until the next one.");
   if (const session::Histogram& ages = law_->ages(); ages.count() > 0) {
     s += fmt::format(
         "ROS 2     delay from a position to its force: {:.2f} ms (median), {:.2f} ms (99 %)\n",

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "share/steer/save_knobs.h"
+#include "text/counted.h"
 #include "view/panel_flow.h"
 
 namespace thimble::view {
@@ -36,11 +37,8 @@ std::string why_no_step_now(const session::SharedReader& reader) {
 }  // namespace
 
 std::string counted(const session::SharedReader::Counters& counters) {
-  char text[128];
-  std::snprintf(text, sizeof text, "%llu ticks, %llu periods missed",
-                static_cast<unsigned long long>(counters.ticks),
-                static_cast<unsigned long long>(counters.missed));
-  std::string line = text;
+  std::string line = scene::counted(counters.ticks, "tick") + ", " +
+                     scene::counted(counters.missed, "period") + " missed";
   if (counters.paused > 0) line += ", " + std::to_string(counters.paused) + " paused";
   return line;
 }

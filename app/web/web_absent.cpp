@@ -8,7 +8,8 @@ class WebServer::Parts {};
 driver::Result<std::unique_ptr<WebServer>> WebServer::listen(session::RunAttachment&,
                                                              std::uint16_t) {
   return driver::Error{
-      "Built without Boost, which the web server requires; install libboost-dev and rebuild."};
+      "The live page is not part of this build. Install libboost-dev and build again with -D "
+      "THIMBLE_WEB=ON."};
 }
 
 WebServer::WebServer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}

@@ -18,6 +18,8 @@ tetrahedron >good.off
 expect 0 '' "$thimble" mesh good.off --json good.json
 expect_json good.json .touchable == true
 expect 2 'no_such.off' "$thimble" mesh no_such.off
+expect 2 'folder' "$thimble" mesh .
+expect 2 'cgal:elephant.*scenes' "$thimble" mesh cgal:elephant
 : >empty.off
 expect 2 'empty\.off' "$thimble" mesh empty.off
 printf 'OFF\n0 0 0\n' >no_triangles.off

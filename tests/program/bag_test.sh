@@ -22,7 +22,7 @@ END
 }
 python3 "$maker" make circle.db3
 scene from_bag '{bag: circle.db3}' >from_bag.yaml
-if "$thimble" run from_bag.yaml --duration 0.01 2>&1 | grep -q 'built without ROS bag support'; then
+if "$thimble" run from_bag.yaml --duration 0.01 2>&1 | grep -q 'ROS bags are not part of this build'; then
   echo "Built without SQLite"
   exit 77
 fi

@@ -14,7 +14,7 @@ wall = next(one for one in whole["checks"] if one["name"] == "stiffest_wall")
 figures = {one["name"]: one["value"] for one in wall["figures"]}
 assert 500 < figures["stiffest_wall_low"] < figures["stiffest_wall_high"] < 2000
 assert figures["wall_over_twin_low"] <= figures["wall_over_twin"] <= figures["wall_over_twin_high"]
-assert figures["force_most"] <= 1, figures
+assert figures["max_force"] <= 1, figures
 soak = next(one for one in whole["checks"] if one["name"] == "soak")
 assert "would reach" in soak["text"], soak
 heat = {one["name"]: one["value"] for one in soak["figures"]}

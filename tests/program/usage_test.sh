@@ -83,6 +83,10 @@ expect_error 2 'elefant elephant' "$thimble" run elefant
 expect_error 2 'vintage_fantom vintage_phantom' "$thimble" run box --arm vintage_fantom
 expect_error 2 '--axis velocty velocity' "$thimble" study accuracy --axis velocty --out out
 expect_error 2 'scene "stifness" stiffness' "$thimble" help scene stifness
+# A key with a new name.
+expect_error 2 '"grain" wavelength thimble help scene' "$thimble" help scene grain
+expect_error 2 '"turning" angular_velocity thimble help scene' "$thimble" help scene turning
+expect_error 2 '"swing_degrees" amplitude_degrees thimble help arm' "$thimble" help arm swing_degrees
 expect_error 2 '--save-object scene "wegdes" wedges' \
   "$thimble" run box --duration 0.01 --save-mesh a.off --save-object wegdes
 expect_error 2 'polhm polhem' "$thimble" plug polhm

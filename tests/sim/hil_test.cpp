@@ -77,7 +77,7 @@ TEST(Hil, PassesAnArmThatMatchesItsFile) {
     }
     const HilResult& wall = results.at("stiffest_wall");
     EXPECT_EQ(figure_value(wall.figures, "wall_over_twin"), 1);
-    EXPECT_LE(figure_value(wall.figures, "force_most"), kHilForceMax);
+    EXPECT_LE(figure_value(wall.figures, "max_force"), kHilForceMax);
     EXPECT_NEAR(figure_value(results.at("force_accuracy").figures, "force_ratio"), 1, 0.02);
   }
 }
@@ -241,7 +241,7 @@ TEST(Hil, JudgesTheStiffestWallToATenth) {
                 by_friction ? "friction" : "delay", middle, low, high);
     EXPECT_LE(low, middle);
     EXPECT_GE(high, middle);
-    EXPECT_LE(figure_value(wall.figures, "force_most"), kHilForceMax);
+    EXPECT_LE(figure_value(wall.figures, "max_force"), kHilForceMax);
   };
   for (const char* name : names) {
     for (int seed = 0; seed < (all ? 20 : 2); ++seed) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bringup/identify/line_forces.h"
+#include "text/counted.h"
 
 namespace thimble::bringup {
 namespace {
@@ -293,8 +294,8 @@ void of_link(const Identified& identified, Sentences& all) {
   if (!identified.reports) {
     all.emplace_back("Report period and jitter: not requested.");
   } else if (identified.reports->period.value == 0) {
-    all.push_back(fmt::format("Report period and jitter: not measured; only {} reports arrived.",
-                              identified.reports->reports));
+    all.push_back(fmt::format("Report period and jitter: not measured; only {} arrived.",
+                              scene::counted(identified.reports->reports, "report")));
   } else if (identified.reports->blurred) {
     all.emplace_back(
         "Report period and jitter: approximate only; reports are so irregular that a late one "

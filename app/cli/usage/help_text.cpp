@@ -98,8 +98,11 @@ std::vector<HelpTopic> help_topics(const CLI::App& command) {
   for (const CLI::App* below : command.get_subcommands([](const CLI::App*) { return true; })) {
     if (!below->get_name().empty() || below->get_group().empty()) continue;
     const bool required = below->get_require_option_min() > 0;
-    topics.push_back(
-        {below->get_group() + (required ? " (at least one)" : ""), below->get_options(is_option)});
+    const auto is_own_option = [&](const CLI::Option* option) {
+      return is_option(option) && option != below->get_help_ptr();  // -h is in the general topic
+    };
+    topics.push_back({below->get_group() + (required ? " (at least one)" : ""),
+                      below->get_options(is_own_option)});
   }
   const auto general = std::find_if(topics.begin(), topics.end(),
                                     [](const HelpTopic& topic) { return topic.title == kGeneral; });

@@ -42,7 +42,7 @@ struct ArmFacts {
   std::array<double, 3> workspace_max{};  ///< Maximum corner, m.
 };
 
-/// What the gate changed in a tick's force.
+/// Changes of a tick's force by the gate.
 struct GateCuts {
   bool limited = false;       ///< Limited to the arm's maximum force.
   bool rise_limited = false;  ///< Limited in its rate of increase.

@@ -13,8 +13,8 @@ Service::~Service() = default;
 
 driver::Result<std::unique_ptr<Service>> Service::listen(std::uint16_t, Report) {
   return driver::Error{
-      "--serve haply is not part of this build. Install libboost-dev and nlohmann-json3-dev, "
-      "and build again."};
+      "--serve haply is not part of this build. Install libboost-dev and nlohmann-json3-dev, and "
+      "build again with -D THIMBLE_WEB=ON."};
 }
 
 std::uint16_t Service::port() const noexcept {

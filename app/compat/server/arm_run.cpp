@@ -16,6 +16,7 @@
 #include "run_arm.h"
 #include "setup.h"
 #include "terminal.h"
+#include "text/counted.h"
 #include "thimble/driver/fault.h"
 
 namespace thimble::compat {
@@ -198,10 +199,9 @@ std::string ArmRun::own_report() const {
   const std::uint64_t ticks = run.ticks();
   const auto due = std::llround(run.duration() * session_->scene().rate) + 1;
   const auto missed = std::max<long long>(due - static_cast<long long>(ticks), 0);
-  std::string s =
-      fmt::format("Program   {} ({}): requested a force in {} of {} ticks; {} tick{} missed.\n",
-                  options_.program, channel_.api.data(), client_->renewals(), ticks, missed,
-                  missed == 1 ? "" : "s");
+  std::string s = fmt::format("Program   {} ({}): requested a force in {} of {}; {} missed.\n",
+                              options_.program, channel_.api.data(), client_->renewals(),
+                              scene::counted(ticks, "tick"), scene::counted(missed, "tick"));
   if (client_->stalls() > 0) {
     s += fmt::format(
         "Stalls    {} did not renew its force in time, {} time{}; the force was zero meanwhile.\n",

@@ -77,7 +77,11 @@ render::ContactChoice read_contact(YamlMap map) {
 
 void read_mesh(YamlMap& map, const std::filesystem::path& folder,
                const std::filesystem::path& mesh_folder, SceneObject& object) {
-  object.mesh_file = find_mesh_file(map, folder, mesh_folder);
+  if (map.has("mesh")) {
+    object.mesh_file = find_mesh_file(map, folder, mesh_folder);
+  } else {
+    map.refuse_absence("expected one of mesh, plane, sphere, box and field, found none");
+  }
   if (map.has("size")) object.size = map.require_number("size", "m", 1e-4, kPositionMax);
   if (object.size && map.has("scale")) {
     map.refuse("scale", "cannot be used with size; keep one of them");
@@ -112,6 +116,16 @@ void read_sheets(YamlMap& map, SceneObject& object) {
   object.contact.tracker = render::TrackerChoice::kGodObject;
 }
 
+/// Explains the keys of surfaces and meshes that an object without them does not use.
+void explain_unused_keys(YamlMap& map) {
+  for (const char* key : {"size", "scale", "repair", "open", "contact"}) {
+    map.explain_unused(key, "needs mesh");
+  }
+  for (const char* key : {"stiffness", "damping", "effects", "body"}) {
+    map.explain_unused(key, "needs a surface: mesh, plane, sphere or box");
+  }
+}
+
 SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
                         const std::filesystem::path& mesh_folder, render::EffectContext context) {
   SceneObject object;
@@ -127,6 +141,7 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
       map.optional_vector3("position", Eigen::Vector3d::Zero(), "m", -kPositionMax, kPositionMax);
   context.R_WO = object.R_WO;
   context.p_WO = object.p_WO;
+  explain_unused_keys(map);
   if (map.has("field")) {
     object.build_field = read_field(map, folder, context);
     return object;
@@ -240,6 +255,8 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
   std::vector<YamlMap> arms;
   if (several) {
     if (auto read = read_arms(root, folder, reading, arms, scene); !read) return read.error();
+  } else {
+    root.explain_unused("faults", "needs arms, a list of two arms or more");
   }
   scene.arms.front().own_arm_file = scene.arms.front().arm_file;
   if (!reading.arm.empty()) {

@@ -54,7 +54,7 @@ stability::RigRun stop_run(const FrictionCase& which, const stability::FrictionR
 /// Measures a friction on a rig. Real-time: never from the servo thread.
 FrictionMeasures measure(const FrictionCase& which, const stability::FrictionRigSettings& rig);
 
-/// What the naive law does at constant speed [PHYSICS 2.1].
+/// Force of the naive law at constant speed [PHYSICS 2.1].
 struct EvenSliding {
   double mean = 0;    ///< N, against the motion.
   double ripple = 0;  ///< N RMS.

@@ -40,7 +40,7 @@ struct WorstStop {
   double force = 0;         // N RMS above 50 Hz
   double way = 0;           // m RMS above 50 Hz
   double sign_changes = 0;  // 1/s
-  double held_least = HUGE_VAL;
+  double min_held = HUGE_VAL;
 };
 
 WorstStop worst_stop(const FrictionCase& which) {
@@ -58,7 +58,7 @@ WorstStop worst_stop(const FrictionCase& which) {
       worst.way = std::max(worst.way, stability::root_mean_square(std::span(way).last(1000)));
       worst.sign_changes =
           std::max(worst.sign_changes, stability::sign_changes_per_second(rest, 1000));
-      worst.held_least = std::min(worst.held_least, std::abs(stability::mean(rest)));
+      worst.min_held = std::min(worst.min_held, std::abs(stability::mean(rest)));
     }
   }
   return worst;
@@ -145,7 +145,7 @@ driver::Result<std::vector<session::Figure>> study_friction(const std::filesyste
   figures.push_back({"bristle.worst_of_160_stops.force", worst.force, "N", "<= 0.001"});
   figures.push_back({"bristle.worst_of_160_stops.way", worst.way, "m", "<= 5e-08"});
   figures.push_back({"bristle.worst_of_160_stops.sign_changes", worst.sign_changes, "1/s", "== 0"});
-  figures.push_back({"bristle.worst_of_160_stops.held_least", worst.held_least, "N", ">= 0.25"});
+  figures.push_back({"bristle.worst_of_160_stops.min_held", worst.min_held, "N", ">= 0.25"});
 
   if (auto done = report::write_text(csv, folder / "friction.csv"); !done) return done.error();
   if (!report::has_gnuplot()) {

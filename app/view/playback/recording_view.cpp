@@ -9,6 +9,7 @@
 
 #include "recording/replay_watch.h"
 #include "share/describe_scene.h"
+#include "text/counted.h"
 #include "view/drawn_from_shared.h"
 
 namespace thimble::view {
@@ -80,9 +81,9 @@ driver::Result<void> RecordingView::touch_again() {
 
 void RecordingView::describe(std::span<const session::Replay> replays) {
   const session::RecordingInfo& info = arms_.front().info;
-  about_.push_back(fmt::format("Recorded on {} ({}), {:g} Hz, {} time; {} ticks.", info.arm,
-                               info.device, info.rate, info.clock == "virtual" ? "virtual" : "real",
-                               ticks().size()));
+  about_.push_back(fmt::format("Recorded on {} ({}), {:g} Hz, {} time; {}.", info.arm, info.device,
+                               info.rate, info.clock == "virtual" ? "virtual" : "real",
+                               scene::counted(ticks().size(), "tick")));
   if (arms() > 1) about_.push_back("The plots show the first arm, " + info.arm_in_scene + ".");
   const bool cut = std::any_of(arms_.begin(), arms_.end(),
                                [](const session::Recording& arm) { return !arm.complete; });
@@ -91,9 +92,9 @@ void RecordingView::describe(std::span<const session::Replay> replays) {
   for (const session::Replay& replay : replays) differing += replay.compared.differing;
   if (differing > 0) {
     about_.push_back(
-        fmt::format("The scene responds differently from the recording in {} ticks. Force and tip "
+        fmt::format("The scene responds differently from the recording in {}. Force and tip "
                     "are as recorded; objects and dents are those of the current scene.",
-                    differing));
+                    scene::counted(differing, "tick")));
   }
   if (ticks().front().tick > 0 && (film_.bodies() != nullptr || film_.shapes())) {
     about_.push_back(
@@ -101,7 +102,8 @@ void RecordingView::describe(std::span<const session::Replay> replays) {
         "missing.");
   }
   if (film_.shapes()) {
-    about_.push_back(fmt::format("What is shaped for good is shown every {:g} s.", film_.step()));
+    about_.push_back(
+        fmt::format("Permanent changes of shape are shown every {:g} s.", film_.step()));
   }
   const auto frames = film_.dents() == nullptr ? 0 : film_.dents()->frames().size();
   if (frames > session::DentTrace::kFramesMax / 2) {

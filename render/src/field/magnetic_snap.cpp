@@ -14,6 +14,7 @@ void read_target(SettingsReader& reader, MagneticSnap::Settings::Target& target)
   const bool line = reader.has("from") || reader.has("to");
   if (line == reader.has("point")) {
     reader.reject("", "expected either point, or from and to");
+    reader.explain_unused("to", "cannot be used with point");
   } else if (line) {
     reader.vector("from", target.from_O, kPlace);
     reader.vector("to", target.to_O, kPlace);

@@ -53,9 +53,19 @@ driver::HeatSettings read_heat(YamlMap& map) {
   return heat;
 }
 
+/// Returns the sentence for a key whose value a built-in shape fixes.
+std::string fixed_by(const driver::ShapeRow& shape) {
+  return "is fixed by shape: " + std::string(shape.name) + "; remove it";
+}
+
 /// Reads the values that may differ between two arms of a built-in shape, whose geometry, drives
 /// and encoders are code.
-void read_built_in_joints(YamlMap map, driver::ArmModel& model, driver::HeatSettings& heat) {
+void read_built_in_joints(YamlMap map, const driver::ShapeRow& shape, driver::ArmModel& model,
+                          driver::HeatSettings& heat) {
+  for (const char* key : {"ratio", "current_max", "counts_per_motor_turn", "home_counts",
+                          "motor_sign", "encoder_sign"}) {
+    map.explain_unused(key, fixed_by(shape));
+  }
   Eigen::Vector3d torque;
   for (std::size_t i = 0; i < 3; ++i) {
     torque[static_cast<Eigen::Index>(i)] = model.drives[i].torque_constant;
@@ -214,6 +224,8 @@ void read_carried(YamlMap map, ArmFile& arm) {
     map.reject("weight",
                fmt::format("expected at most a third of the gate's force_max, {:.3g} N", third));
   }
+  for (const char* key : {"moment_b", "moment_c"})
+    map.explain_unused(key, std::string(kNeedsSerialArm));
   if (arm.is<driver::SerialArm>()) {
     arm.carried_moments = {map.optional_number("moment_b", 0, "kg m", -1, 1),
                            map.optional_number("moment_c", 0, "kg m", -1, 1)};
@@ -271,14 +283,20 @@ void read_kind(YamlMap& root, ArmFile& arm) {
   if (row.has_own_link()) {
     // The software of its vendor knows joints and motors. A file that contains them is rejected.
     arm.model = vendor_pose_shape().built_in();
+    for (const char* key : {"shape", "board_model", "geometry", "joints", "gimbal"}) {
+      root.explain_unused(key,
+                          "cannot be used with an arm that a service or library of its vendor "
+                          "drives");
+    }
     return;
   }
   const driver::ShapeRow& shape = driver::arm_shapes()[root.optional_choice("shape", 0, shapes)];
   arm.board_model = static_cast<int>(root.optional_whole("board_model", 0, "", 0, 1000));
   if (shape.built_in != nullptr) {
     arm.model = shape.built_in();
+    root.explain_unused("geometry", fixed_by(shape));
     if (root.has("joints")) {
-      read_built_in_joints(root.require_map("joints"), arm.model, arm.heat);
+      read_built_in_joints(root.require_map("joints"), shape, arm.model, arm.heat);
     }
   } else {
     arm.model.geometry = read_geometry(root.require_map("geometry"));

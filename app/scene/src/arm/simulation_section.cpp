@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <string>
 #include <string_view>
 
 #include "arm/nanoseconds.h"
@@ -160,6 +161,11 @@ device_sim::LinkSettings read_links(YamlMap map, const ArmFile& arm) {
 
 device_sim::SimulatedArmSettings read_simulation(YamlMap map, const ArmFile& arm) {
   device_sim::SimulatedArmSettings settings;
+  for (const char* key : {"encoders", "links"})
+    map.explain_unused(key, std::string(kNeedsSerialArm));
+  for (const char* key : {"drive_train", "motors", "firmware", "wire"}) {
+    map.explain_unused(key, "cannot be used with shape: falcon");
+  }
   if (arm.is<driver::SerialArm>()) {
     settings.firmware.ideal_encoders = map.require_choice("encoders", {"quantised", "ideal"}) == 1;
   }

@@ -17,6 +17,10 @@ HandWaypoint read_waypoint(YamlMap map, const std::vector<SceneObject>& objects)
   HandWaypoint waypoint;
   waypoint.time = map.require_number("t", "s", 0, kTimeMax);
   waypoint.stop = map.optional_bool("stop", false);
+  for (const char* key : {"near", "press"}) {
+    map.explain_unused(key, map.has("at") ? "needs on, an object, instead of at"
+                                          : "needs on, an object of this scene");
+  }
   if (map.has("at") == map.has("on")) {
     map.refuse("", "expected either at: [x, y, z] or on: OBJECT with near: [x, y, z]");
   } else if (map.has("at")) {
@@ -79,6 +83,14 @@ std::vector<HandWaypoint> read_hand(YamlMap map, const std::vector<SceneObject>&
   if (map.has("grip")) read_grip(map.require_map("grip"), grip);
   if (map.has("bag")) {
     hand = read_bag_path(map, folder);
+    map.finish();
+    return hand;
+  }
+  for (const char* key : {"topic", "axes"}) {
+    map.explain_unused(key, "needs bag, a ROS 2 bag, instead of path");
+  }
+  if (map.key_line("path") == 0 &&
+      map.refuse_absence("hand: expected either path or bag, found neither")) {
     map.finish();
     return hand;
   }

@@ -108,9 +108,8 @@ void LogFile::end(const std::string& why) {
   ended_ = true;
   file_.reset();
   console().write(
-      fmt::format("thimble: Logging has stopped, because {} cannot be written ({}). The run "
-                  "continues. Repair the "
-                  "folder or the disk, or name another file with --log.",
+      fmt::format("thimble: Logging has stopped, because {} cannot be written ({}). "
+                  "Repair the folder or the disk, or name another file with --log.",
                   path_.string(), why));
 }
 

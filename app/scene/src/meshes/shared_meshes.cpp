@@ -157,14 +157,14 @@ driver::Result<std::shared_ptr<const render::StillSurface>> SharedMeshes::surfac
 }
 
 driver::Result<std::shared_ptr<const HandRoute>> SharedMeshes::hand_route(
-    const std::vector<HandWaypoint>& stations, const NamedPointers& objects) {
+    const std::vector<HandWaypoint>& waypoints, const NamedPointers& objects) {
   const std::scoped_lock lock(held_->mutex);
-  if (auto found = held_->routes.find({stations, objects})) return found;
+  if (auto found = held_->routes.find({waypoints, objects})) return found;
   std::vector<NamedMesh> named;
   for (const auto& [name, mesh_W] : objects) named.push_back({name, mesh_W.get()});
-  auto planned = plan_hand(stations, named);
+  auto planned = plan_hand(waypoints, named);
   if (!planned) return planned.error();
-  return held_->routes.keep({stations, objects}, std::move(planned).value());
+  return held_->routes.keep({waypoints, objects}, std::move(planned).value());
 }
 
 }  // namespace thimble::scene

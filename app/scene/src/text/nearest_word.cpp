@@ -39,9 +39,9 @@ std::optional<std::string> nearest_word(std::string_view word,
     const std::size_t longer = std::max(word.size(), candidate.size());
     const std::size_t shorter = std::min(word.size(), candidate.size());
     if (longer - shorter >= bound) continue;
-    // Words without a common letter are not similar.
+    // At most half of the letters of the shorter word differ.
     const std::size_t apart = letters_apart(word, candidate);
-    if (apart >= bound || apart >= longer) continue;
+    if (apart >= bound || 2 * apart > shorter) continue;
     bound = apart;
     nearest = candidate;
   }

@@ -13,7 +13,8 @@ struct RenamedKey {
   std::string_view is;     ///< New name, requested by the reader.
 };
 
-/// All renamed keys. Old names are removed only with a major version.
+/// All renamed keys. The guide's page of the API lists them, and says when old names may be
+/// removed.
 inline constexpr std::array kRenamedKeys{
     RenamedKey{"effects[] texture: sandpaper", "grain", "wavelength"},
     RenamedKey{"objects[].body.motion", "turning", "angular_velocity"},

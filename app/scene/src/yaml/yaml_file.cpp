@@ -123,7 +123,10 @@ std::string YamlMistakes::text() const {
   append(flaws_);
   if (!flaws_explain_all_) append(values_);
   if (count == 0 && !checks_ignored_) append(checks_);
-  if (count > kept) text += fmt::format("\n{} more mistakes follow.", count - kept);
+  if (count > kept) {
+    text += fmt::format("\n{} more mistake{}.", count - kept,
+                        count - kept == 1 ? " follows" : "s follow");
+  }
   return text;
 }
 

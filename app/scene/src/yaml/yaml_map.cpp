@@ -391,6 +391,12 @@ void YamlMap::finish() {
   if (mistakes_->keys() != nullptr) mistakes_->keys()->finished(place_, requested_);
   for (const Entry& entry : entries_) {
     if (std::find(requested_.begin(), requested_.end(), entry.key) != requested_.end()) continue;
+    const auto unused = std::find_if(unused_.begin(), unused_.end(),
+                                     [&](const auto& one) { return one.first == entry.key; });
+    if (unused != unused_.end()) {
+      mistakes_->add(entry.line, entry.key + ": " + unused->second);
+      continue;
+    }
     std::string sentence = entry.key + ": unknown key";
     if (mistakes_->full()) {  // only counted from here on
       mistakes_->add(entry.line, sentence);

@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "thimble/driver/export.h"
@@ -182,6 +183,20 @@ class YamlMap {
   /// Ignores the failed checks of the whole file; see YamlMistakes::ignore_checks.
   void ignore_checks() { mistakes_->ignore_checks(); }
 
+  /// Adds that this map has none of several keys, as an invalid value. Returns false and adds
+  /// nothing if the map could not be read, because that is reported already, or if keys are logged.
+  bool refuse_absence(const std::string& sentence) {
+    if (quiet_ || mistakes_->keys() != nullptr) return false;
+    refuse("", sentence);
+    return true;
+  }
+
+  /// Sets the reason why a key of the reference is not used in this map. If the key is present and
+  /// was not requested, `finish` reports this sentence ("needs hold") instead of an unknown key.
+  void explain_unused(std::string_view key, std::string sentence) {
+    unused_.emplace_back(key, std::move(sentence));
+  }
+
   /// Records each key that was not requested as a mistake, with the nearest known key as a
   /// suggestion.
   void finish();
@@ -215,6 +230,7 @@ class YamlMap {
 
   std::vector<Entry> entries_;
   std::vector<std::string> requested_;
+  std::vector<std::pair<std::string, std::string>> unused_;  ///< Keys and sentences.
   std::shared_ptr<YamlMistakes> mistakes_;
   int line_ = 0;
   std::string place_;

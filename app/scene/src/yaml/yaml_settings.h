@@ -29,6 +29,9 @@ class YamlSettings final : public render::SettingsReader {
   void list(std::string_view key,
             const std::function<void(render::SettingsReader&)>& read) override;
   void reject(std::string_view key, const std::string& sentence) override;
+  void explain_unused(std::string_view key, const std::string& sentence) override {
+    map_.explain_unused(key, sentence);
+  }
 
   /// Records each key that was not requested as a mistake.
   void finish() { map_.finish(); }

@@ -5,6 +5,7 @@
 
 #include "events/event_words.h"
 #include "log/logger.h"
+#include "text/counted.h"
 
 namespace thimble::session {
 namespace {
@@ -63,7 +64,9 @@ void EventLog::serve() noexcept {
     }
     const std::uint64_t lost = watch_.lost();
     if (lost == lost_reported_) return;
-    log_->warn("{} events were lost because the log could not keep up.", lost - lost_reported_);
+    log_->warn("{} lost because the log could not keep up.",
+               scene::counted(lost - lost_reported_, "event") +
+                   (lost - lost_reported_ == 1 ? " was" : " were"));
     lost_reported_ = lost;
   } catch (const std::exception&) {
     // Out of memory: drops the events. An event that cannot be logged must not end the run.

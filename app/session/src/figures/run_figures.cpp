@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "text/counted.h"
 #include "thimble/driver/fault.h"
 #include "thimble/driver/heat_guard.h"
 #include "wall_side.h"
@@ -83,8 +84,8 @@ std::string summary(const RunFigures& report) {
                    std::abs(energy),
                    energy > 0 ? "." : " from the hand, as a passive surface does.");
   s += fmt::format(
-      "Loop      {} ticks, {:.1f} of the requested {:.1f} per second; {}.\n", run.ticks(),
-      run.rate(), report.requested_rate,
+      "Loop      {}, {:.1f} of the requested {:.1f} per second; {}.\n",
+      scene::counted(run.ticks(), "tick"), run.rate(), report.requested_rate,
       report.virtual_time
           ? "virtual time, bit-identical in every run"
           : fmt::format("longest period {:.0f} us, requested {:.0f} us",
@@ -98,14 +99,17 @@ std::string summary(const RunFigures& report) {
                  microseconds(run.work().percentile(0.999)), period_us);
   if (report.paging) {
     s += fmt::format(
-        "Pages     {} read from disk, {} evicted, {} damaged; a page was missing in {} ticks{}.\n",
+        "Pages     {} read from disk, {} evicted, {} damaged; a page was missing in {}{}.\n",
         report.paging->loads, report.paging->evictions, report.paging->failures,
-        report.paging->misses, report.paging->misses > 0 ? ", and the last plane was kept" : "");
+        scene::counted(report.paging->misses, "tick"),
+        report.paging->misses > 0 ? ", and the last plane was kept" : "");
   }
-  s += fmt::format("Wire      {} reports, {} invalid, {} ticks without a new report.\n",
-                   report.wire.reports, report.wire.rejected, report.wire.missing);
-  s += fmt::format("Safety    force limited in {} ticks, rise limited in {}, soft start in {}.\n",
-                   report.gate.limited, report.gate.rise_limited, report.gate.soft_started);
+  s += fmt::format("Wire      {}, {} invalid, {} without a new report.\n",
+                   scene::counted(report.wire.reports, "report"), report.wire.rejected,
+                   scene::counted(report.wire.missing, "tick"));
+  s += fmt::format("Safety    force limited in {}, rise limited in {}, soft start in {}.\n",
+                   scene::counted(report.gate.limited, "tick"), report.gate.rise_limited,
+                   report.gate.soft_started);
   if (report.carried_weight > 0) {
     s += fmt::format("Gravity   the motors also carried {}{:.3g} N of the arm's weight.\n",
                      report.carried_by_pose ? "up to " : "", report.carried_weight);
@@ -119,36 +123,36 @@ std::string summary(const RunFigures& report) {
   }
   if (report.walls.pushed > 0) {
     s += fmt::format(
-        "Walls     the tip left the workspace: walls pushed in {} ticks, with at most {:.2f} N ({} "
+        "Walls     the tip left the workspace: walls pushed in {}, with at most {:.2f} N ({} "
         "wall).\n",
-        report.walls.pushed, report.walls.f_strongest_W.norm(),
+        scene::counted(report.walls.pushed, "tick"), report.walls.f_strongest_W.norm(),
         wall_side(report.walls.f_strongest_W));
   }
   if (report.energy_stage == driver::EnergyStage::kPassivity) {
     s += fmt::format(
-        "Gate      passivity: at most {:.2f} mJ given beyond the energy taken; damping in {} "
-        "ticks.\n",
-        0 - 1e3 * report.gate.min_energy, report.gate.damped);  // avoids -0.00
+        "Gate      passivity: at most {:.2f} mJ given beyond the energy taken; damping in {}.\n",
+        0 - 1e3 * report.gate.min_energy,
+        scene::counted(report.gate.damped, "tick"));  // avoids -0.00
   } else if (report.energy_stage == driver::EnergyStage::kBounding) {
-    s += fmt::format("Gate      energy bound: force limited in {} ticks.\n", report.gate.bounded);
+    s += fmt::format("Gate      energy bound: force limited in {}.\n",
+                     scene::counted(report.gate.bounded, "tick"));
   }
   if (report.gate.power_limited > 0) {
     s += fmt::format(
-        "Power     {:.2f} W maximum mean power; force reduced in {} ticks (power_max in the arm "
+        "Power     {:.2f} W maximum mean power; force reduced in {} (power_max in the arm "
         "file).\n",
-        report.gate.power_max, report.gate.power_limited);
+        report.gate.power_max, scene::counted(report.gate.power_limited, "tick"));
   }
   if (report.gate.oscillations > 0) {
     s += fmt::format(
         "Program   its force oscillated and grew {} time{}, last at {:.0f} Hz: it was reduced in "
-        "{} ticks. Its spring or damper is too stiff for this arm and loop.\n",
+        "{}. Its spring or damper is too stiff for this arm and loop.\n",
         report.gate.oscillations, report.gate.oscillations == 1 ? "" : "s",
-        report.gate.oscillation_frequency, report.gate.calmed);
+        report.gate.oscillation_frequency, scene::counted(report.gate.calmed, "tick"));
   }
   if (report.heat_known && report.max_heat >= driver::HeatGuard::kWarning) {
-    s +=
-        fmt::format("Heat      a motor reached {:.0f} % of its limit; force reduced in {} ticks.\n",
-                    100 * report.max_heat, report.heat_lowered);
+    s += fmt::format("Heat      a motor reached {:.0f} % of its limit; force reduced in {}.\n",
+                     100 * report.max_heat, scene::counted(report.heat_lowered, "tick"));
   }
   if (report.gate.stalls > 0) {
     s += fmt::format(

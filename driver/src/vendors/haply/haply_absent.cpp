@@ -7,8 +7,8 @@ namespace {
 
 Error absent() {
   return {
-      "Built without Inverse3 support. Install libboost-dev and nlohmann-json3-dev, and build "
-      "again."};
+      "Arms behind Haply's service (Inverse3) are not part of this build. Install libboost-dev and "
+      "nlohmann-json3-dev, and build again with -D THIMBLE_WEB=ON."};
 }
 
 }  // namespace

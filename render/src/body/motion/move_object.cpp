@@ -141,6 +141,10 @@ void MotionChoice::read(SettingsReader& reader) {
     reader.number("hold", grip->stiffness, {.unit = "N/m", .min = 1, .max = kHoldMax});
     reader.number("hold_damping", grip->damping, {.unit = "N s/m", .min = 0, .max = kDampingMax});
     reader.number("hold_force", grip->force_max, {.unit = "N", .min = 0.01, .max = kHoldForceMax});
+  } else {
+    for (const char* key : {"hold_damping", "hold_force"}) {
+      reader.explain_unused(key, "needs hold, the stiffness of the grip in N/m");
+    }
   }
   for (const char* key : {"angular_damping", "angular_velocity"}) {
     if (kind == MotionKind::kTranslate && reader.has(key)) {

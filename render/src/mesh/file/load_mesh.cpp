@@ -75,6 +75,11 @@ driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file, MeshFi
     return driver::Error{
         sentence.starts_with(file.string() + ':') ? sentence : file.string() + ": " + sentence};
   };
+  std::error_code status;
+  if (std::filesystem::is_directory(file, status)) {
+    return error(std::string("this is not a file but a folder; expected an ") + kMeshEndings +
+                 " file.");
+  }
   const std::string ending = ending_of(file);
   if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end()) {
     return error("unknown file extension \"" + ending + "\"; expected an " + kMeshEndings +

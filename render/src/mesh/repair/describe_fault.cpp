@@ -43,7 +43,7 @@ Wording wording_of(MeshFault::Kind kind) {
     case MeshFault::Kind::kInsideOut:
       return {"closed component has its normals pointing into its material",
               "closed components have their normals pointing into their material",
-              "reverse all its triangles, or set the contact mesh's option `orient`"};
+              "a scene reverses its triangles on loading, and so does a repair"};
   }
   return {"fault is of an unknown kind", "faults are of an unknown kind", "report it as a bug"};
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/closest_point.h"
 #include "mesh/mesh_edges.h"
 
 namespace thimble::render {
@@ -60,6 +61,20 @@ bool are_apart(const std::array<Vector3d, 3>& a, const std::array<Vector3d, 3>& 
     }
   }
   return false;
+}
+
+// Returns a point that both triangles have, within about `tolerance`, by projecting a point onto
+// the triangles in turn.
+Vector3d common_point(const std::array<Vector3d, 3>& a, const std::array<Vector3d, 3>& b,
+                      double tolerance) {
+  constexpr int kRounds = 10'000;  // [chosen: below a millisecond; most pairs need fewer than ten]
+  Vector3d p = (a[0] + a[1] + a[2] + b[0] + b[1] + b[2]) / 6;
+  for (int round = 0; round < kRounds; ++round) {
+    const Vector3d on_a = closest_point(p, a[0], a[1], a[2]);
+    p = closest_point(on_a, b[0], b[1], b[2]);
+    if ((p - on_a).norm() <= tolerance) break;
+  }
+  return p;
 }
 
 // A tree of boxes over triangles of parts, which is compared with itself. Nodes are split when they
@@ -212,7 +227,7 @@ void TouchSearch::compare(const PartTriangle& a, const PartTriangle& b) {
   if (are_apart(corners(a.number), corners(b.number), tolerance_)) return;
   if (pairs_.empty()) {
     found_.triangles = {std::min(a.number, b.number), std::max(a.number, b.number)};
-    found_.place = corners(found_.triangles[0])[0] + middle_;
+    found_.place = common_point(corners(a.number), corners(b.number), tolerance_) + middle_;
   }
   pairs_.insert(key(std::min(a.part, b.part), std::max(a.part, b.part)));
 }
@@ -315,10 +330,9 @@ std::string describe(const TouchingParts& parts) {
   const std::string pairs = fmt::format("{}{} pair{} of parts", parts.complete ? "" : "At least ",
                                         parts.pairs, parts.pairs == 1 ? "" : "s");
   return fmt::format(
-      "{} overlap or lie flush against each other (first: triangles {} and {}, near ({:.4g}, "
+      "{} overlap or lie flush against each other (first: triangles {} and {}, at ({:.4g}, "
       "{:.4g}, {:.4g})). The tip feels their union. Join them into one body in a mesh editor if "
-      "the "
-      "object dents or changes shape.",
+      "the object dents or changes shape.",
       pairs, parts.triangles[0], parts.triangles[1], parts.place.x(), parts.place.y(),
       parts.place.z());
 }

@@ -21,7 +21,7 @@ inline constexpr double kFlushTolerance = 1e-6;
 struct TouchingParts {
   std::size_t pairs = 0;                          ///< Number of pairs of parts that touch.
   std::array<std::int32_t, 2> triangles{-1, -1};  ///< Triangles of the first pair, one per part.
-  Eigen::Vector3d place{0, 0, 0};                 ///< A corner of the first triangle.
+  Eigen::Vector3d place{0, 0, 0};                 ///< A point that both triangles have.
   bool complete = true;                           ///< False if the search reached its bound.
 };
 

@@ -28,6 +28,7 @@ TEST(NearestWord, IgnoresDissimilarWords) {
   EXPECT_FALSE(nearest_word("elephant", kKnown));
   EXPECT_FALSE(nearest_word("", kKnown));
   EXPECT_FALSE(nearest_word("xy", {"ab"}));
+  EXPECT_FALSE(nearest_word("foo", {"on", "off", "fit", "form"}));
   EXPECT_FALSE(nearest_word("run", {}));
 }
 

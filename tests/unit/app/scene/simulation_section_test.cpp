@@ -172,13 +172,13 @@ TEST(SimulationSection, RejectsImpossibleLinksAndThoseOfALinkage) {
           .find("square of coupling"),
       std::string::npos);
   EXPECT_NE(mistake_with("  tip:\n", "  links: {yaw_b: 0.001}\n  tip:\n", "polhem")
-                .find("links: unknown key"),
+                .find("links: needs shape: serial"),
             std::string::npos);
 }
 
 TEST(SimulationSection, RefusesADriveTrainOfTheFalcon) {
   EXPECT_NE(mistake_with("  tip:\n", "  drive_train: {current_lag: 0.001}\n  tip:\n", "falcon")
-                .find("drive_train: unknown key"),
+                .find("drive_train: cannot be used with shape: falcon"),
             std::string::npos);
 }
 

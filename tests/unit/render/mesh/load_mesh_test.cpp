@@ -122,6 +122,8 @@ TEST(LoadMesh, NamesFileAndLineOfEveryFaultInOffText) {
 
 TEST(LoadMesh, RefusesOtherFiles) {
   EXPECT_NE(load_mesh("no_such_file.off").error().message.find("no such file"), std::string::npos);
+  EXPECT_NE(load_mesh(".").error().message.find(".: this is not a file but a folder; "),
+            std::string::npos);
   EXPECT_NE(load_mesh("mesh.xyz").error().message.find("unknown file extension \"xyz\""),
             std::string::npos);
   const auto folder = support::scratch_folder() / "load_mesh_folder.off";

@@ -39,6 +39,16 @@ TEST(TouchingParts, FindsPartsThatOverlap) {
   EXPECT_TRUE(found.complete);
 }
 
+TEST(TouchingParts, GiveAPointOfTheOverlap) {
+  for (const Vector3d& moved :
+       {Vector3d(0.5, 0.4, 0.3), Vector3d(1.9, 1.9, 1.9), Vector3d(-1.9, 0.2, 0.1),
+        Vector3d(0.1, -1.8, 1.7), Vector3d(2, 0.4, 0.3), Vector3d(0, 0, 2)}) {
+    const Vector3d place = parts_of_boxes(moved).place;
+    EXPECT_LE(place.cwiseAbs().maxCoeff(), 1 + 1e-4) << moved.transpose();
+    EXPECT_LE((place - moved).cwiseAbs().maxCoeff(), 1 + 1e-4) << moved.transpose();
+  }
+}
+
 TEST(TouchingParts, FindsPartsThatAreFlush) {
   EXPECT_EQ(parts_of_boxes({2, 0.4, 0.3}).pairs, 1U);
   EXPECT_EQ(parts_of_boxes({2 + 1e-7, 0.4, 0.3}).pairs, 1U);

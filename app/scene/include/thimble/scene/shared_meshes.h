@@ -60,7 +60,7 @@ class THIMBLE_EXPORT SharedMeshes {
   /// Returns the path of a hand. `objects` are meshes of this store with the names that the
   /// waypoints use. The error is that of plan_hand.
   driver::Result<std::shared_ptr<const HandRoute>> hand_route(
-      const std::vector<HandWaypoint>& stations,
+      const std::vector<HandWaypoint>& waypoints,
       const std::vector<std::pair<std::string, std::shared_ptr<const render::TriangleMesh>>>&
           objects);
 

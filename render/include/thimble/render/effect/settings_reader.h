@@ -49,6 +49,10 @@ class THIMBLE_EXPORT SettingsReader {
   /// Records a mistake that only the effect can detect, such as two incompatible settings.
   /// `sentence` has no period: "static friction must not be below sliding friction".
   virtual void reject(std::string_view key, const std::string& sentence) = 0;
+  /// Sets the reason (second argument) why a setting is not read ("needs hold"). If the setting is
+  /// given, a reader of files reports this sentence instead of an unknown key. Does nothing by
+  /// default.
+  virtual void explain_unused(std::string_view, const std::string&) {}
 };
 
 }  // namespace thimble::render

@@ -1,4 +1,4 @@
-#include "view/gl/film_file.h"
+#include "view/gl/animation_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -159,8 +159,8 @@ driver::Result<void> find_ffmpeg() {
   return missing();
 }
 
-driver::Result<void> write_film(const std::vector<Picture>& pictures, double frame_time,
-                                const std::filesystem::path& file) {
+driver::Result<void> write_animation(const std::vector<Picture>& pictures, double frame_time,
+                                     const std::filesystem::path& file) {
   std::array<int, 2> ends{-1, -1};
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> said(std::tmpfile(), &std::fclose);
   if (said == nullptr || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
