@@ -305,8 +305,8 @@ void add_shot_command(CLI::App& app, int& exit_code) {
   add_example(*command, "thimble shot elephant --at 2 --out elephant.png",
               "--animate  From --at to --until. MP4 and GIF require ffmpeg; PNG is animated.\n"
               "--camera   YAW: degrees about z, from the user's side. PITCH: degrees above the\n"
-              "           horizon. ZOOM: a factor from 0.01 to 100. By default the camera frames\n"
-              "           the scene.");
+              "           horizon. ZOOM: a factor from 0.01 to 100. By default the camera\n"
+              "           frames the scene.");
   command->callback([options, &exit_code] { exit_code = take_shot(*options); });
 }
 

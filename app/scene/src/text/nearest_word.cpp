@@ -39,9 +39,10 @@ std::optional<std::string> nearest_word(std::string_view word,
     const std::size_t longer = std::max(word.size(), candidate.size());
     const std::size_t shorter = std::min(word.size(), candidate.size());
     if (longer - shorter >= bound) continue;
-    // At most half of the letters of the shorter word differ.
+    // At most half of the letters of the shorter word differ, unless it begins the other.
     const std::size_t apart = letters_apart(word, candidate);
-    if (apart >= bound || 2 * apart > shorter) continue;
+    const bool begins = !word.empty() && std::string_view(candidate).starts_with(word);
+    if (apart >= bound || (2 * apart > shorter && !begins)) continue;
     bound = apart;
     nearest = candidate;
   }

@@ -30,6 +30,7 @@ TEST(NearestWord, IgnoresDissimilarWords) {
   EXPECT_FALSE(nearest_word("xy", {"ab"}));
   EXPECT_FALSE(nearest_word("foo", {"on", "off", "fit", "form"}));
   EXPECT_FALSE(nearest_word("run", {}));
+  EXPECT_EQ(nearest_word("o", {"at", "out"}), "out");
 }
 
 TEST(NearestWord, PrefersTheFirstOfEquallyNear) {
