@@ -251,6 +251,16 @@ int view_recordings(const ViewOptions& options, const ShowWindow& show_window) {
       return report_error({file + " is the name of a run. Name either one run or recordings."},
                           kExitBadInput);
     }
+  }
+  // A missing window before a missing file: no file can be shown then. A missing file before the
+  // options: it may be no recording.
+  if (!show_window.recordings) {
+    return report_error(
+        {"The window is not installed: " + how_to_get(kViewer) +
+         "; or write a page for a browser: `thimble replay FILE --page FILE.html`."},
+        kExitBadInput);
+  }
+  for (const std::string& file : options.shown) {
     std::error_code unknown;
     if (!std::filesystem::exists(file, unknown)) {
       return report_error({"RUN: there is no file " + file + "."}, kExitBadInput);
@@ -261,12 +271,6 @@ int view_recordings(const ViewOptions& options, const ShowWindow& show_window) {
         {options.shown.front() +
          " is a recording, so options that control a run cannot be used. To write it as "
          "text, use `thimble export`."},
-        kExitBadInput);
-  }
-  if (!show_window.recordings) {
-    return report_error(
-        {"The window is not installed: " + how_to_get(kViewer) +
-         "; or write a page for a browser: `thimble replay FILE --page FILE.html`."},
         kExitBadInput);
   }
   return show_window.recordings(options.shown, options.seconds);
