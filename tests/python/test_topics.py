@@ -1,4 +1,6 @@
 """ROS 2 topics of runs from Python."""
+import re
+
 import pytest
 import thimble
 
@@ -19,7 +21,7 @@ def test_run_is_published_and_reported(monkeypatch):
         raise
     with live:
         assert live.tick is None or live.running
-    assert "ticks published; 0 forces received" in live.topics
+    assert re.search("ticks? published; 0 forces received", live.topics)
 
 
 def test_no_topics_unless_asked():
