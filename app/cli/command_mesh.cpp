@@ -225,7 +225,7 @@ int describe_mesh_file(const MeshOptions& options, Json& json) {
   }
   if (options.file.starts_with("cgal:")) {
     return report_error({options.file + ": names with cgal: can be used only in scenes. Give the "
-                                        "path of the file; its folder is usually build/meshes."},
+                                        "path of the file; `thimble doctor` prints the folders."},
                         kExitBadInput);
   }
   output::OutputPlan plan;

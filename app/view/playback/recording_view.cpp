@@ -102,7 +102,7 @@ void RecordingView::describe(std::span<const session::Replay> replays) {
         "missing.");
   }
   if (film_.shapes()) {
-    about_.push_back(fmt::format("Permanent shape is shown every {:g} s.", film_.step()));
+    about_.push_back(fmt::format("Permanent shapes are shown at steps of {:g} s.", film_.step()));
   }
   const auto frames = film_.dents() == nullptr ? 0 : film_.dents()->frames().size();
   if (frames > session::DentTrace::kFramesMax / 2) {

@@ -34,7 +34,7 @@ expect 2 'haply' "$thimble" exec --serve tetris true
 expect 2 '70000' "$thimble" exec --serve haply --port 70000 true
 expect_words 7 'ws://localhost:#' serve sh -c 'exit 7'
 expect_words 2 './nowhere' serve ./nowhere
-expect_words 3 'arms' serve --arm nonesuch true
+expect_words 2 'arm nonesuch' serve --arm nonesuch true
 
 python=/usr/bin/python3 # Debian's
 [ -x $python ] || python=python3

@@ -173,7 +173,7 @@ TEST(RecordingView, ShowsPermanentShapes) {
   EXPECT_GT(moved(*now), 0.5 * moved(seen.moments[1]));
   const auto& about = seen.recorded->about();
   EXPECT_TRUE(std::any_of(about.begin(), about.end(), [](const std::string& sentence) {
-    return sentence.find("Permanent shape is shown every 0.25 s") != std::string::npos;
+    return sentence.find("Permanent shapes are shown at steps of 0.25 s") != std::string::npos;
   }));
 }
 
