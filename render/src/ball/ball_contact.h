@@ -112,8 +112,9 @@ class BallContact {
   // Largest share of the radius of curvature that the tip may be deep for Newton's steps: beyond
   // it the ball does not rest on an edge. [chosen]
   static constexpr double kBendMax = 0.97;
-  // Number of steps after which they are no longer Newton's. [chosen]
-  static constexpr int kNewtonMax = 10;
+  // Newton's steps, and those without, in turn: so none of them repeats for ever. [chosen]
+  static constexpr int kNewtonSteps = 12;
+  static constexpr int kTurnSteps = 16;
 
   // Moves the ball to where it rests.
   void follow(const Eigen::Vector3d& p_WT) noexcept {
@@ -123,16 +124,17 @@ class BallContact {
     // A ball that touches moves about as far as the tip.
     if (state_.touching) want = std::min(want, 2 * (p_WT - p_WT_).norm() + rounding);
     bool newton = true;
-    double left = (p_WT - p_WQ_).squaredNorm();
     for (int round = 0; round < kStepsMax; ++round) {
       double reach = want;
       const auto features = source_.features(p_WQ_, reach);
       const Eigen::Vector3d to_tip = p_WT - p_WQ_;
-      newton = newton && round < kNewtonMax;
-      const Eigen::Matrix3d H = newton ? bend(features) : Eigen::Matrix3d::Identity();
+      const bool bends = newton && round % kTurnSteps < kNewtonSteps;
+      const Eigen::Matrix3d H = bends ? bend(features) : Eigen::Matrix3d::Identity();
+      // Around an edge or corner by at most 45 degrees.
+      if (!H.isIdentity(0)) reach = std::min(reach, radius);
       BallStep step = ball_step(features, to_tip, H, rounding / 4);
       if (!step.feasible) {
-        if (!newton) break;
+        if (!bends) break;
         newton = false;
         continue;
       }
@@ -151,13 +153,12 @@ class BallContact {
         want = std::min(2 * want + rounding, (p_WT - p_WQ_).norm());
         continue;
       }
-      if (settled(radius, rounding)) {
+      // With H = 1 the step ends where the way to the tip is a combination of the normals.
+      const bool exact = (H * step.y - step.y).norm() <= 4 * rounding;
+      if (settled(radius, rounding) && exact) {
         touch(p_WT, before, true);
         return;
       }
-      const double still = (p_WT - p_WQ_).squaredNorm();
-      if (newton && round > 2 && still > left) newton = false;
-      left = still;
     }
     ++unsettled_;
     touch(p_WT, before, false);

@@ -6,10 +6,10 @@
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <memory>
 #include <string>
 #include <utility>
@@ -102,6 +102,7 @@ struct Found {
 Found wander(const TriangleMesh& mesh, double radius, double size, double depth_max, Random& random,
              int ticks) {
   BallContact<MeshBall> ball = ball_on(mesh, radius);
+  const auto search = make_search(ball.mesh(), {});
   Found found;
   Vector3d p(0, 0, 3 * size), target = p;
   for (int tick = 0; tick < ticks; ++tick) {
@@ -122,8 +123,7 @@ Found wander(const TriangleMesh& mesh, double radius, double size, double depth_
     }
     const Near near = near_by_all(mesh, state.p_WP);
     found.inside = std::max(found.inside, radius - near.distance);
-    found.crossed =
-        found.crossed || (tick % 10 == 0 && ball.source().inside(state.p_WP + 1e-9 * state.n_W));
+    found.crossed = found.crossed || search->inside(state.p_WP);
     const double off = off_cone(near.normals, state.p_WP - p);
     if (off > 1e-9) ++found.off_count;
     found.off = std::max(found.off, off);
@@ -142,7 +142,7 @@ void expect_exact(const std::string& name, const Found& found) {
   EXPECT_LT(found.inside, 1e-9) << name;
   EXPECT_FALSE(found.crossed) << name;
   EXPECT_LE(found.off_count, static_cast<int>(found.unsettled)) << name;
-  EXPECT_LE(found.unsettled, static_cast<std::uint64_t>(found.touching / 500)) << name;
+  EXPECT_LE(found.unsettled, static_cast<std::uint64_t>(found.touching / 100)) << name;
 }
 
 TriangleMesh rough_sphere(Random& random, int subdivisions, double radius, double roughness) {
@@ -198,7 +198,7 @@ TEST(BallMesh, APathMeetsTheMeshWhereItsDistanceIsTheRadius) {
   MeshBall& source = ball.source();
   int met = 0, missed = 0;
   for (int i = 0; i < 3000; ++i) {
-    const Vector3d from = 0.06 * random.direction(), to = from + random.in_box(0.1);
+    const Vector3d from = 0.06 * random.direction(), to = random.in_box(0.06);
     const SolidEntry entry = source.first_entry(from, to);
     const double end = entry.triangle >= 0 ? entry.parameter : 1;
     double least = 1;
@@ -216,23 +216,21 @@ TEST(BallMesh, APathMeetsTheMeshWhereItsDistanceIsTheRadius) {
     // A path that begins inside enters nothing.
     ASSERT_LT(source.first_entry(0.005 * random.direction(), to).triangle, 0);
   }
-  EXPECT_GT(met, 1000);
-  EXPECT_GT(missed, 500);
+  EXPECT_GT(met, 300);
+  EXPECT_GT(missed, 300);
 }
 
 double tick_time(ObjectTouch& touch, double r, int ticks) {
   double least = 1e9;
   touch.update(at({0, 0, 1}));
   for (int round = 0; round < 4; ++round) {
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();
     for (int i = 0; i < ticks; ++i) {
       const double s = 5e-3 * i;
       touch.update(at({r * std::sin(s), r * std::cos(s) * std::sin(0.01 * s),
                        r * std::cos(s) * std::cos(0.01 * s)}));
     }
-    least = std::min(
-        least,
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / ticks);
+    least = std::min(least, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / ticks);
   }
   return 1e9 * least;
 }

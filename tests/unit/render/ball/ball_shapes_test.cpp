@@ -101,14 +101,14 @@ void expect_rounded_box(ObjectTouch& touch, const SolidBlock& block, double R) {
       n[(k / 3 + 1) % 3] = 0;
     }
     n.normalize();
-    const double depth = random.uniform(0.01, 0.9) * R;
+    const double depth = random.uniform(0.01, 0.45) * R;
     const Vector3d n_W = block.R * n;
     const Vector3d q = block.centre + block.R * (c_O + R * n);
     const Vector3d p = q - depth * n_W;
     touch.update(at(Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())));
     touch.update(at(q + 0.01 * n_W));
     // Obliquely, so that the ball has to slide to its place.
-    touch.update(at(p + 0.3 * R * random.direction()));
+    touch.update(at(p + 0.2 * R * random.direction()));
     driver::ForceCommand last;
     for (int tick = 0; tick < 6; ++tick) last = touch.update(at(p));
     ASSERT_LT((last.f_T_W - kStiffness * depth * n_W).norm(), 1e-9 * kStiffness) << k;
