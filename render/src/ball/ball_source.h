@@ -45,7 +45,7 @@ concept BallSource = requires(Source& source, const Source& still, const Eigen::
 /// Place where the ball on a path meets one convex part, as a share of the path; above 1: it does
 /// not. `feature(x)` is the part's feature for the centre x. The distance from a convex part is a
 /// convex function along the path, so Newton's steps from outside pass nothing. A ball no farther
-/// than `tolerance` (m) touches the part. Real-time: safe.
+/// than `tolerance` (m) touches the part; the path must lead deeper than that. Real-time: safe.
 template <class Feature>
 double meets_convex(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double tolerance,
                     double share_max, const Feature& feature) noexcept {
@@ -60,7 +60,10 @@ double meets_convex(const Eigen::Vector3d& from, const Eigen::Vector3d& to, doub
     const double approach = -near.n_W.dot(way);
     // Written so that NaN meets nothing.
     if (!(approach > 0)) return kNever;
-    if (near.gap <= tolerance) return share;
+    if (near.gap <= tolerance) {
+      // A ball that ends on the part, by rounding, is not held by it.
+      return approach * (1 - share) - near.gap > tolerance / 2 ? share : kNever;
+    }
     share += near.gap / approach;
     if (!(share <= share_max)) return kNever;
   }
