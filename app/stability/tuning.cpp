@@ -302,11 +302,17 @@ StabilityLimits stability_limits(const scene::ArmFile& arm, const scene::LoopTim
 std::vector<std::string> stability_warnings(const scene::Scene& scene) {
   std::vector<std::string> warnings;
   if (!scene.arms.front().arm.can_simulate) return warnings;  // its tip is unknown
+  const scene::LoopTimes times = loop_times(scene.arms.front().arm, scene.rate);
+  StabilityLimits carried;
+  const scene::SceneObject* before = nullptr;  // object of `carried`
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > 0)) continue;
-    const StabilityLimits carried =
-        stability_limits(scene.arms.front().arm, loop_times(scene.arms.front().arm, scene.rate),
-                         object.stiffness, object.damping);
+    // Many objects of a large scene are alike.
+    if (before == nullptr || object.stiffness != before->stiffness ||
+        object.damping != before->damping) {
+      carried = stability_limits(scene.arms.front().arm, times, object.stiffness, object.damping);
+      before = &object;
+    }
     if (object.stiffness > carried.stiffness_exact) {
       warnings.push_back(advice(scene, object, carried));
     }

@@ -54,8 +54,7 @@ std::vector<RunSharing::Shaped> shaped_objects(const Setup& setup) {
   for (std::size_t i = 0; i < setup.scene().objects.size(); ++i) {
     if (!setup.scene().objects[i].body.shape.named()) continue;
     const render::BodyShape* shape = setup.objects().touch().object(i).shape();
-    const std::size_t vertices =
-        setup.objects().place(i + 1).vertex - setup.objects().place(i).vertex;
+    const std::size_t vertices = setup.objects().mesh_W(i).vertices.size();
     shaped.push_back({.shape = shape,
                       .first = first,
                       .first_split = first_split,
