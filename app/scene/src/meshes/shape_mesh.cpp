@@ -1,5 +1,6 @@
 // Meshes of shapes. They are drawn, and give the hand's path and the mass of a moving body.
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <numbers>
 #include <utility>

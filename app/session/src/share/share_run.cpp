@@ -21,6 +21,8 @@ constexpr int kRunsOfAScene = 100;  // largest number of simultaneous runs of on
 driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const LiveKnobs& knobs,
                                                      const SessionOptions& options,
                                                      SharedRun* before) {
+  // Before the meshes of many shapes are made.
+  if (auto fits = check_object_count(setup.scene().objects.size()); !fits) return fits.error();
   std::vector<std::string> devices;
   for (std::size_t i = 0; i < setup.arms(); ++i) devices.push_back(setup.device_name(i));
   SharedScene scene = describe_scene(setup.scene(), setup.objects(), devices);
