@@ -29,7 +29,9 @@ const std::vector<KeyRelation>& relations() {
   static const std::vector<KeyRelation> kRelations = {
       {"", Relation::kOne, {"arm", "arms"}},
       {"", Relation::kOne, {"hand", "arms"}},
-      {"objects[]", Relation::kOne, {"mesh", "plane", "sphere", "box", "field"}},
+      {"objects[]",
+       Relation::kOne,
+       {"mesh", "plane", "sphere", "box", "cylinder", "capsule", "cone", "torus", "field"}},
       {"objects[]", Relation::kAtMostOne, {"size", "scale"}},
       {"objects[].effects[]", Relation::kOne, {}},
       {"objects[].body.motion", Relation::kSecondToo, {"floor_friction", "floor"}},
