@@ -85,22 +85,14 @@ class THIMBLE_EXPORT GodObjectContact {
   void surface_moved(std::int32_t swept_over) noexcept {
     free_space_ = {};
     if (swept_over < 0 || state_.touching || !has_before_) return;
-    place_ = {.triangle = swept_over};
-    state_.touching = true;
-    state_.triangle = swept_over;
-    state_.n_W = mesh_->cell(swept_over).face.n;
-    state_.p_WP = p_OP_;
+    rest_on(swept_over, p_OP_);
   }
 
   /// Begins contact on a triangle with the proxy at `p_WP` (W, m), whatever the path of the tip:
   /// for a world of several objects (render/src/world). Real-time: safe.
   void begin(std::int32_t triangle, const Eigen::Vector3d& p_WP) noexcept {
     set_free(p_WP);
-    place_ = {.triangle = triangle};
-    state_.touching = true;
-    state_.triangle = triangle;
-    state_.n_W = mesh_->cell(triangle).face.n;
-    state_.p_WP = p_WP;
+    rest_on(triangle, p_WP);
   }
   /// Ends the contact, if any, and places the free tip at `p_WT` (W, m). Real-time: safe.
   void set_free(const Eigen::Vector3d& p_WT) noexcept {
@@ -131,6 +123,13 @@ class THIMBLE_EXPORT GodObjectContact {
   const ContactSearch& search() const noexcept { return *search_; }
 
  private:
+  void rest_on(std::int32_t triangle, const Eigen::Vector3d& p_WP) noexcept {
+    place_ = {.triangle = triangle};
+    state_.touching = true;
+    state_.triangle = triangle;
+    state_.n_W = mesh_->cell(triangle).face.n;
+    state_.p_WP = p_WP;
+  }
   void follow(const Eigen::Vector3d& p_OT) noexcept;
 
   // On the heap, so that the search's pointer to the mesh stays valid when the contact is moved.

@@ -82,24 +82,14 @@ class THIMBLE_EXPORT TrackedContact {
   void surface_moved(std::int32_t swept_over) noexcept {
     free_space_ = {};
     if (swept_over < 0 || state_.touching || !has_before_) return;
-    tracker_.start(swept_over);
-    follows_ = true;
-    state_.touching = true;
-    state_.triangle = swept_over;
-    state_.n_W = mesh_->cell(swept_over).face.n;
-    state_.p_WP = p_WT_before_;
+    rest_on(swept_over, p_WT_before_);
   }
 
   /// Begins contact on a triangle with the proxy at `p_WP` (W, m), whatever the path of the tip:
   /// for a world of several objects (render/src/world). Real-time: safe.
   void begin(std::int32_t triangle, const Eigen::Vector3d& p_WP) noexcept {
     set_free(p_WP);
-    tracker_.start(triangle);
-    follows_ = true;
-    state_.touching = true;
-    state_.triangle = triangle;
-    state_.n_W = mesh_->cell(triangle).face.n;
-    state_.p_WP = p_WP;
+    rest_on(triangle, p_WP);
   }
   /// Ends the contact, if any, and places the free tip at `p_WT` (W, m). Real-time: safe.
   void set_free(const Eigen::Vector3d& p_WT) noexcept {
@@ -166,6 +156,14 @@ class THIMBLE_EXPORT TrackedContact {
   const ContactSearch& search() const noexcept { return *search_; }
 
  private:
+  void rest_on(std::int32_t triangle, const Eigen::Vector3d& p_WP) noexcept {
+    tracker_.start(triangle);
+    follows_ = true;
+    state_.touching = true;
+    state_.triangle = triangle;
+    state_.n_W = mesh_->cell(triangle).face.n;
+    state_.p_WP = p_WP;
+  }
   // Adapter of the mesh for face_above.
   struct Faces {
     const ContactMesh& mesh;

@@ -108,26 +108,7 @@ class ContactForceLaw {
 
   /// Returns the force of the object on the hand in this tick. Real-time: safe.
   driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
-    driver::ForceCommand command;
-    const ContactState& contact = contact_.update(state);
-    // Written so that a NaN depth means no contact and no force.
-    if (contact.touching && contact.depth > 0) {
-      SurfaceResponse response{.contact = contact};
-      feel(state, response);
-      command.f_T_W = response.f_T_W;
-      command.touch = {.in_contact = true,
-                       .object = 0,
-                       .feature = contact.triangle,
-                       .depth = response.contact.depth,
-                       .p_WP = response.contact.p_WP,
-                       .n_W = response.contact.n_W,
-                       .hops = contact.hops};
-      touching_ = true;
-    } else if (touching_) {
-      std::apply([](auto&... stage) { (stage.leave(), ...); }, stages_);
-      touching_ = false;
-    }
-    return command;
+    return command_of(state, contact_.update(state), contact_);
   }
 
   /// Returns the force of a contact that was found at `state.p_WT`. `source` is the contact stage
@@ -135,25 +116,7 @@ class ContactForceLaw {
   template <class Source>
   driver::ForceCommand respond(const driver::DeviceState& state, const ContactState& contact,
                                const Source& source) noexcept {
-    driver::ForceCommand command;
-    // Written so that a NaN depth means no contact and no force.
-    if (contact.touching && contact.depth > 0) {
-      SurfaceResponse response{.contact = contact};
-      feel_at(state, source, response);
-      command.f_T_W = response.f_T_W;
-      command.touch = {.in_contact = true,
-                       .object = 0,
-                       .feature = contact.triangle,
-                       .depth = response.contact.depth,
-                       .p_WP = response.contact.p_WP,
-                       .n_W = response.contact.n_W,
-                       .hops = contact.hops};
-      touching_ = true;
-    } else if (touching_) {
-      std::apply([](auto&... stage) { (stage.leave(), ...); }, stages_);
-      touching_ = false;
-    }
-    return command;
+    return command_of(state, contact, source);
   }
 
   /// Returns the stiffness of the surface's spring, N/m; 0 if no stage is a spring. Real-time:
@@ -183,25 +146,35 @@ class ContactForceLaw {
   Contact& contact() noexcept { return contact_; }
 
  private:
-  void feel(const driver::DeviceState& state, SurfaceResponse& response) noexcept {
-    if constexpr ((ClosestPointStage<Stages> || ...)) {
-      const ClosestSurfacePoint closest = closest_point_of(contact_, state.p_WT);
-      const auto run = [&](auto& stage) {
-        if constexpr (requires { stage.touch_at(closest, state, response); }) {
-          stage.touch_at(closest, state, response);
-        } else {
-          stage.touch(state, response);
-        }
-      };
-      std::apply([&](auto&... stage) { (run(stage), ...); }, stages_);
-    } else {
-      std::apply([&](auto&... stage) { (stage.touch(state, response), ...); }, stages_);
+  // Inlined in the tick of one object and in that of a solid, so that neither pays for the other.
+  template <class Source>
+  [[gnu::always_inline]] driver::ForceCommand command_of(const driver::DeviceState& state,
+                                                         const ContactState& contact,
+                                                         const Source& source) noexcept {
+    driver::ForceCommand command;
+    // Written so that a NaN depth means no contact and no force.
+    if (contact.touching && contact.depth > 0) {
+      SurfaceResponse response{.contact = contact};
+      feel(state, source, response);
+      command.f_T_W = response.f_T_W;
+      command.touch = {.in_contact = true,
+                       .object = 0,
+                       .feature = contact.triangle,
+                       .depth = response.contact.depth,
+                       .p_WP = response.contact.p_WP,
+                       .n_W = response.contact.n_W,
+                       .hops = contact.hops};
+      touching_ = true;
+    } else if (touching_) {
+      std::apply([](auto&... stage) { (stage.leave(), ...); }, stages_);
+      touching_ = false;
     }
+    return command;
   }
 
   template <class Source>
-  void feel_at(const driver::DeviceState& state, const Source& source,
-               SurfaceResponse& response) noexcept {
+  void feel(const driver::DeviceState& state, const Source& source,
+            SurfaceResponse& response) noexcept {
     if constexpr ((ClosestPointStage<Stages> || ...)) {
       const ClosestSurfacePoint closest = closest_point_of(source, state.p_WT);
       const auto run = [&](auto& stage) {
