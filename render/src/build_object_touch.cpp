@@ -117,7 +117,7 @@ Built dented(Built touch, const TriangleMesh& mesh_W, const SurfaceChoice& surfa
   return Built(std::make_unique<DentedTouch>(std::move(touch).value(), std::move(dent).value()));
 }
 
-/// Builds an object of several parts that overlap, each a solid of its own.
+/// Builds an object of several parts that overlap, each a separate solid.
 Built parts_touch(std::vector<MeshPart> parts, const std::shared_ptr<const ContactMesh>& mesh,
                   const ContactChoice& choice, const SurfaceChoice& surface) {
   std::vector<PartsTouch::Part> built;

@@ -8,7 +8,7 @@
 
 namespace thimble::render {
 
-/// A part of a mesh as a mesh of its own.
+/// A part of a mesh as a separate mesh.
 struct MeshPart {
   TriangleMesh mesh;
   std::vector<std::int32_t> triangles;  ///< Number in the whole mesh of each triangle.

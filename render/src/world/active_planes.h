@@ -11,7 +11,7 @@ namespace thimble::render {
 /// change places with them within a tick.
 inline constexpr std::size_t kActiveMax = 6;
 
-/// Maximum number of planes on which one solid holds the proxy: the faces of its own concave edge
+/// Maximum number of planes on which one solid holds the proxy: the faces of a concave edge
 /// or corner.
 inline constexpr std::size_t kCornerMax = 3;
 

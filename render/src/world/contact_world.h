@@ -70,7 +70,7 @@ class THIMBLE_EXPORT ContactWorld {
   struct Active {
     std::int32_t solid = -1;
     ActivePlane plane;                                // of the contact as a whole
-    std::array<Eigen::Vector3d, kCornerMax> faces_W;  // normals of its own concave edge or corner
+    std::array<Eigen::Vector3d, kCornerMax> faces_W;  // normals at a concave edge or corner
     std::size_t face_count = 0;                       // 0: `plane` is the only one
     ContactState found;                               // contact at `at_W`, or at the begin
     Eigen::Vector3d at_W{0, 0, 0};                    // tip as pushed out by the others

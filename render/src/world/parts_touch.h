@@ -14,7 +14,7 @@
 
 namespace thimble::render {
 
-/// The force law of one object of several parts, each a solid of its own. The parts share one
+/// The force law of one object of several parts, each a separate solid. The parts share one
 /// proxy.
 class PartsTouch final : public ObjectTouch {
  public:

@@ -94,7 +94,7 @@ class THIMBLE_EXPORT SceneTouch {
 
  private:
   class WorldTouch;
-  // What runs in each tick: an object of its own number, whose touch has the number 0, or the
+  // What runs in each tick: one object, whose touch has the number 0, or the
   // world, whose touch has the number of the object.
   struct Felt {
     ObjectTouch* touch = nullptr;

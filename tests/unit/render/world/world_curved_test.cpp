@@ -15,7 +15,7 @@
 
 #include "support/long_form.h"
 #include "support/random.h"
-#include "thimble/driver/device_state.h"
+#include "support/tip_at.h"
 #include "thimble/render/build_primitive_touch.h"
 #include "thimble/render/scene_touch.h"
 #include "track/path_bounded.h"
@@ -29,12 +29,6 @@ using support::Random;
 
 constexpr double kStiffness = 800;
 constexpr double kSize = 0.04;  // m, of a scene
-
-driver::DeviceState at(const Vector3d& p) {
-  driver::DeviceState state;
-  state.p_WT = p;
-  return state;
-}
 
 /// Signed distance and outward normal of a surface.
 struct Surface {
@@ -96,7 +90,7 @@ Found wander(Random& random, int ticks, double depth_max) {
   SceneTouch scene(std::move(objects));
   Found result;
   Vector3d p(0, 0, 0.1), target = random.in_box(0.02);
-  scene(at(p));
+  scene(support::tip_at(p));
   ProxyFilter filter;
   filter.follow(p, {});
   for (int tick = 0; tick < ticks; ++tick) {
@@ -105,7 +99,7 @@ Found wander(Random& random, int ticks, double depth_max) {
     p += std::min(1.0, random.uniform(0, 2e-4) / way.norm()) * way;
     const Vector3d deep = p - scene.world()->proxy();
     if (deep.norm() > depth_max) p -= (1 - depth_max / deep.norm()) * deep;
-    const driver::ForceCommand command = scene(at(p));
+    const driver::ForceCommand command = scene(support::tip_at(p));
     const Vector3d q = scene.world()->proxy();
     std::vector<Vector3d> normals;
     const auto look = [&](const Surface& surface) {

@@ -12,7 +12,7 @@
 
 #include "support/box_union.h"
 #include "support/meshes/concave_solids.h"
-#include "thimble/driver/device_state.h"
+#include "support/tip_at.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/scene_touch.h"
 #include "world/active_planes.h"
@@ -23,12 +23,6 @@ namespace {
 
 using Eigen::Vector3d;
 using support::SolidBlock;
-
-driver::DeviceState at(const Vector3d& p) {
-  driver::DeviceState state;
-  state.p_WT = p;
-  return state;
-}
 
 TEST(WorldGroove, AWallAcrossAGrooveMakesACornerOfThreePlanes) {
   constexpr double kLeft = 0.5, kRight = 0.7, kStiffness = 800;
@@ -57,7 +51,7 @@ TEST(WorldGroove, AWallAcrossAGrooveMakesACornerOfThreePlanes) {
       const double t = 1e-3 * i;
       const Vector3d p(0.0004 * std::sin(3 * t), std::min(-0.006 + 0.005 * t, 0.008),
                        std::max(0.004 - 0.006 * t, -0.001) + 0.0003 * std::sin(5 * t));
-      const driver::ForceCommand command = scene(at(p));
+      const driver::ForceCommand command = scene(support::tip_at(p));
       const PushOut exact = push_out(planes, p, 0, 1e-15);
       off = std::max(off, (scene.world()->proxy() - p - exact.d).norm());
       force_off = std::max(force_off, (command.f_T_W - kStiffness * exact.d).norm());

@@ -13,8 +13,8 @@
 #include "mesh/overlapping_parts.h"
 #include "support/box_union.h"
 #include "support/meshes/shapes.h"
+#include "support/tip_at.h"
 #include "support/tracker_names.h"
-#include "thimble/driver/device_state.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/scene_touch.h"
 #include "world/contact_world.h"
@@ -25,12 +25,6 @@ namespace {
 
 using Eigen::Vector3d;
 using support::SolidBlock;
-
-driver::DeviceState at(const Vector3d& p) {
-  driver::DeviceState state;
-  state.p_WT = p;
-  return state;
-}
 
 void append(const TriangleMesh& part, TriangleMesh& whole) {
   const auto first = static_cast<std::int32_t>(whole.vertices.size());
@@ -98,7 +92,7 @@ TEST(WorldParts, AreFeltAsSeveralObjectsAre) {
     for (int i = 0; i < 2500; ++i) {
       const Vector3d p(-0.015 + 1e-5 * std::max(0, i - 900), 0.001,
                        std::max(-0.003, 0.004 - 1e-5 * i));
-      const driver::ForceCommand a = one(at(p)), b = two(at(p));
+      const driver::ForceCommand a = one(support::tip_at(p)), b = two(support::tip_at(p));
       ASSERT_EQ(a.f_T_W, b.f_T_W) << support::scene_name(tracker) << ' ' << i;
       if (a.touch.in_contact) {
         ASSERT_EQ(a.touch.object, 0);
@@ -120,7 +114,8 @@ TEST(WorldParts, AreFeltOnABodyThatMoves) {
           .value());
   SceneTouch scene(std::move(objects));
   for (int i = 0; i < 2500; ++i) {
-    scene(at({-0.015 + 1e-5 * std::max(0, i - 900), 0.001, std::max(-0.003, 0.004 - 1e-5 * i)}));
+    scene(support::tip_at(
+        {-0.015 + 1e-5 * std::max(0, i - 900), 0.001, std::max(-0.003, 0.004 - 1e-5 * i)}));
   }
   EXPECT_GT(scene.object(0).pose().p_WB[0], 0.003);
 }

@@ -17,8 +17,8 @@
 #include "support/heap_guard.h"
 #include "support/long_form.h"
 #include "support/random.h"
+#include "support/tip_at.h"
 #include "support/tracker_names.h"
-#include "thimble/driver/device_state.h"
 #include "thimble/render/build_primitive_touch.h"
 #include "thimble/render/scene_touch.h"
 #include "world/contact_world.h"
@@ -33,12 +33,6 @@ using support::SolidBlock;
 
 constexpr ContactChoice kGodObject{.tracker = TrackerChoice::kGodObject};
 constexpr double kStiffness = 800;
-
-driver::DeviceState at(const Vector3d& p) {
-  driver::DeviceState state;
-  state.p_WT = p;
-  return state;
-}
 
 /// The floor of seam.yaml: two flush boxes with their tops at z = 0 and the seam at x = 0.
 std::vector<SolidBlock> seam() {
@@ -69,14 +63,15 @@ TEST_P(EachTracker, ASeamOfFlushBoxesIsNotFelt) {
       for (int i = 0; i <= 3000; ++i) {
         const double x = direction * (-0.006 + 4e-6 * i);
         const double z = i < 100 ? 0.0008 - 16e-6 * i : -0.0008;
-        const driver::ForceCommand a = two(at({x, y, z})), b = one(at({x, y, z}));
+        const driver::ForceCommand a = two(support::tip_at({x, y, z})),
+                                   b = one(support::tip_at({x, y, z}));
         most = std::max(most, (a.f_T_W - b.f_T_W).norm());
         ASSERT_NEAR(a.touch.depth, b.touch.depth, bound) << x;
         ASSERT_EQ(a.touch.in_contact, b.touch.in_contact) << x;
       }
       EXPECT_LT(most, kStiffness * bound);
-      two(at({0, 0, 0.1}));
-      one(at({0, 0, 0.1}));
+      two(support::tip_at({0, 0, 0.1}));
+      one(support::tip_at({0, 0, 0.1}));
     }
   }
 }
@@ -87,7 +82,7 @@ TEST_P(EachTracker, ABlockOnATableStopsATipThatPressesTheTable) {
   for (int i = 0; i <= 2000; ++i) {
     const double z = std::max(-0.003, 0.002 - 1e-5 * i);
     const double x = -0.006 + std::max(0, i - 600) * 8e-6;  // up to 5.2 mm
-    last = scene(at({x, 0.001, z}));
+    last = scene(support::tip_at({x, 0.001, z}));
     const double side = std::max(0.0, x);
     ASSERT_NEAR(last.f_T_W.z(), kStiffness * std::max(0.0, -z), 1e-3) << i;
     ASSERT_NEAR(-last.f_T_W.x(), kStiffness * side, 1e-3 + 1e-3 * kStiffness * side) << i;
@@ -126,7 +121,7 @@ TEST(World, ShapesWithoutAMeshAreFeltAsMeshesAre) {
                   random.uniform(-0.003, 0.02)};
       }
       p += random.uniform(0, 1e-4) * (target - p).normalized();
-      const driver::ForceCommand a = shapes(at(p)), b = meshes(at(p));
+      const driver::ForceCommand a = shapes(support::tip_at(p)), b = meshes(support::tip_at(p));
       most = std::max(most, (a.f_T_W - b.f_T_W).norm());
       largest = std::max(largest, b.f_T_W.norm());
     }
@@ -143,7 +138,8 @@ TEST(World, SphereOnAPlaneStopsATipThatPressesThePlane) {
   SceneTouch scene(std::move(objects));
   driver::ForceCommand last;
   for (int i = 0; i < 2500; ++i) {
-    last = scene(at({-0.01 + 1e-5 * std::max(0, i - 400), 0, std::max(-0.002, 0.002 - 1e-5 * i)}));
+    last = scene(support::tip_at(
+        {-0.01 + 1e-5 * std::max(0, i - 400), 0, std::max(-0.002, 0.002 - 1e-5 * i)}));
   }
   // The proxy rests where the sphere meets the plane.
   const double edge = 0.02 - std::sqrt(0.02 * 0.02 - 0.015 * 0.015);
@@ -154,12 +150,12 @@ TEST(World, SphereOnAPlaneStopsATipThatPressesThePlane) {
 
 TEST(World, ATipThatStartsInsideFeelsTheSolidAfterLeaving) {
   SceneTouch scene = scene_of(under_block(), kGodObject);
-  EXPECT_EQ(scene(at({0.01, 0, 0.005})).f_T_W.norm(), 0);
-  EXPECT_EQ(scene(at({0.011, 0, 0.005})).f_T_W.norm(), 0);
+  EXPECT_EQ(scene(support::tip_at({0.01, 0, 0.005})).f_T_W.norm(), 0);
+  EXPECT_EQ(scene(support::tip_at({0.011, 0, 0.005})).f_T_W.norm(), 0);
   // Through the table from above, while still inside the block: the table is felt.
-  EXPECT_GT(scene(at({0.011, 0, -0.001})).f_T_W.z(), 0.7);
-  scene(at({0.011, 0, 0.02}));
-  EXPECT_GT(scene(at({0.011, 0, 0.014})).f_T_W.z(), 0.7);
+  EXPECT_GT(scene(support::tip_at({0.011, 0, -0.001})).f_T_W.z(), 0.7);
+  scene(support::tip_at({0.011, 0, 0.02}));
+  EXPECT_GT(scene(support::tip_at({0.011, 0, 0.014})).f_T_W.z(), 0.7);
 }
 
 TEST(World, ASolidInsideAnotherIsNeverFelt) {
@@ -169,21 +165,21 @@ TEST(World, ASolidInsideAnotherIsNeverFelt) {
   SceneTouch nested = scene_of(blocks, kGodObject);
   for (int i = 0; i < 900; ++i) {
     const Vector3d p(0.001, 0.002, 0.011 - 1e-5 * i);
-    ASSERT_EQ(one(at(p)).f_T_W, nested(at(p)).f_T_W) << i;
+    ASSERT_EQ(one(support::tip_at(p)).f_T_W, nested(support::tip_at(p)).f_T_W) << i;
   }
 }
 
 TEST(World, ANanPositionEndsAllContacts) {
   SceneTouch scene = scene_of(under_block(), kGodObject);
-  scene(at({-0.001, 0, 0.001}));
-  scene(at({-0.001, 0, -0.001}));
-  EXPECT_GT(scene(at({0.001, 0, -0.001})).f_T_W.norm(), 1);
+  scene(support::tip_at({-0.001, 0, 0.001}));
+  scene(support::tip_at({-0.001, 0, -0.001}));
+  EXPECT_GT(scene(support::tip_at({0.001, 0, -0.001})).f_T_W.norm(), 1);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(scene(at({nan, 0, 0})).f_T_W, Vector3d(0, 0, 0));
-  EXPECT_EQ(scene(at({-0.001, 0, -0.001})).f_T_W, Vector3d(0, 0, 0));
-  scene(at({-0.001, 0, 0.1}));
-  scene(at({0.001, 0, 0.1}));
-  EXPECT_GT(scene(at({0.001, 0, 0.0145})).f_T_W.z(), 0.3);
+  EXPECT_EQ(scene(support::tip_at({nan, 0, 0})).f_T_W, Vector3d(0, 0, 0));
+  EXPECT_EQ(scene(support::tip_at({-0.001, 0, -0.001})).f_T_W, Vector3d(0, 0, 0));
+  scene(support::tip_at({-0.001, 0, 0.1}));
+  scene(support::tip_at({0.001, 0, 0.1}));
+  EXPECT_GT(scene(support::tip_at({0.001, 0, 0.0145})).f_T_W.z(), 0.3);
 }
 
 TEST(World, TicksAllocateNothing) {
@@ -195,8 +191,8 @@ TEST(World, TicksAllocateNothing) {
       for (int i = 0; i < 20'000; ++i) {
         p += 2e-4 * random.in_box(1);
         p = p.cwiseMax(-0.012).cwiseMin(0.012);
-        scene.prepare(at(p));
-        scene(at(p));
+        scene.prepare(support::tip_at(p));
+        scene(support::tip_at(p));
       }
     });
     EXPECT_EQ(calls, 0) << support::scene_name(tracker);
@@ -211,10 +207,10 @@ template <class Path>
 Work work_around(SceneTouch& scene, const Path& path, int steps) {
   Work work;
   Vector3d before = path(0.0);
-  Vector3d f = scene(at(before)).f_T_W;
+  Vector3d f = scene(support::tip_at(before)).f_T_W;
   for (int i = 1; i <= steps; ++i) {
     const Vector3d p = path(static_cast<double>(i) / steps);
-    const Vector3d f_now = scene(at(p)).f_T_W;
+    const Vector3d f_now = scene(support::tip_at(p)).f_T_W;
     const double done = (f + f_now).dot(p - before) / 2;
     work.sum += done;
     work.in += std::max(0.0, -done);
@@ -234,7 +230,7 @@ TEST(World, AClosedLoopThroughACornerDoesNoWork) {
       blocks[1].half.z() = 0.02;
       blocks[1].centre = blocks[1].R * Vector3d(0.015, 0, 0);
       SceneTouch scene = scene_of(blocks, kGodObject);
-      scene(at({-0.004, 0, 0.01}));
+      scene(support::tip_at({-0.004, 0, 0.01}));
       const auto path = [](double t) {
         const double angle = 2 * std::numbers::pi * t + 2.4;
         return Vector3d(-0.0004 + 0.002 * std::cos(angle), 0.001 * std::sin(angle),
@@ -249,7 +245,7 @@ TEST(World, AClosedLoopThroughACornerDoesNoWork) {
 
 TEST(World, AClosedLoopThroughASeamDoesNoWork) {
   SceneTouch scene = scene_of(seam(), kGodObject);
-  scene(at({-0.004, 0, 0.01}));
+  scene(support::tip_at({-0.004, 0, 0.01}));
   const auto path = [](double t) {
     const double angle = 2 * std::numbers::pi * t + 2.4;
     return Vector3d(0.002 * std::cos(angle), 0.001 * std::sin(angle),
@@ -266,7 +262,7 @@ TEST(World, ASeamBetweenSoftAndStiffGivesTheHandNoEnergy) {
       std::vector<SolidBlock> blocks = seam();
       blocks[1].stiffness = 2 * kStiffness;
       SceneTouch scene = scene_of(blocks, {.tracker = tracker});
-      scene(at({-0.004, 0, 0.01}));
+      scene(support::tip_at({-0.004, 0, 0.01}));
       // Down on one side, along, and up on the other.
       const auto path = [=](double t) {
         const double angle = direction * 2 * std::numbers::pi * t + 2.4;
@@ -300,13 +296,13 @@ TEST(World, ForceChangesByAtMostFiveKTimesThePath) {
         support::kTrackers[static_cast<std::size_t>(i) % support::kTrackers.size()];
     SceneTouch scene = scene_of(blocks, {.tracker = tracker});
     Vector3d p(0, 0, 0.06), target = random.in_box(0.02);
-    Vector3d f = scene(at(p)).f_T_W;
+    Vector3d f = scene(support::tip_at(p)).f_T_W;
     bool touched = false;
     for (int tick = 0; tick < 3000; ++tick) {
       if (random.uniform(0, 1) < 0.01) target = random.in_box(0.03);
       const Vector3d before = p;
       p += random.uniform(0, 3e-4) * (target - p).normalized() + 1e-5 * random.in_box(1);
-      const driver::ForceCommand now = scene(at(p));
+      const driver::ForceCommand now = scene(support::tip_at(p));
       // Where contact ends, the force is zero at once.
       if (touched && now.touch.in_contact) {
         const double ratio = (now.f_T_W - f).norm() / (stiffest * (p - before).norm());
@@ -331,12 +327,12 @@ TEST(World, AFastTipDoesNotPassThinPlates) {
     Random random(500);
     for (int stroke = 0; stroke < 500; ++stroke) {
       Vector3d p(random.uniform(-0.035, 0.035), random.uniform(-0.03, 0.03), 0.004);
-      scene(at({0, 0, 0.1}));
-      scene(at(p));
+      scene(support::tip_at({0, 0, 0.1}));
+      scene(support::tip_at(p));
       // Down at 2 m/s, then along the seams.
       const Vector3d way(random.uniform(-0.001, 0.001), random.uniform(-0.001, 0.001), -0.002);
-      for (int i = 0; i < 4; ++i) scene(at(p += way));
-      const driver::ForceCommand held = scene(at(p));
+      for (int i = 0; i < 4; ++i) scene(support::tip_at(p += way));
+      const driver::ForceCommand held = scene(support::tip_at(p));
       EXPECT_GT(held.f_T_W.z(), 0) << support::scene_name(tracker) << p.transpose();
       EXPECT_GT(scene.world()->proxy().z(), 0) << support::scene_name(tracker);
     }

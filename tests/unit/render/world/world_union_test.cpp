@@ -13,7 +13,7 @@
 #include "support/box_union.h"
 #include "support/long_form.h"
 #include "support/random.h"
-#include "thimble/driver/device_state.h"
+#include "support/tip_at.h"
 #include "thimble/render/scene_touch.h"
 #include "track/path_bounded.h"
 #include "world/contact_world.h"
@@ -31,12 +31,6 @@ using support::SolidBlock;
 constexpr ContactChoice kGodObject{.tracker = TrackerChoice::kGodObject};
 constexpr double kStiffness = 800;
 constexpr double kSize = 0.04;  // m, of a scene
-
-driver::DeviceState at(const Vector3d& p) {
-  driver::DeviceState state;
-  state.p_WT = p;
-  return state;
-}
 
 /// Boxes of a random scene: on a lattice, so that many are flush, or of any pose.
 std::vector<SolidBlock> random_blocks(Random& random, bool turned) {
@@ -80,7 +74,7 @@ Comparison compare(const std::vector<SolidBlock>& blocks, Random& random, int ti
   Vector3d p(0, 0, 0.1);
   BoxUnionProxy exact(blocks, p);
   ProxyFilter filter;
-  scene(at(p));
+  scene(support::tip_at(p));
   filter.follow(p, {});
   Vector3d target = random.in_box(0.02);
   Comparison result;
@@ -90,7 +84,7 @@ Comparison compare(const std::vector<SolidBlock>& blocks, Random& random, int ti
     const Vector3d way = target - p;
     p += std::min(1.0, random.uniform(0, 2e-4) / way.norm()) * way + 2e-5 * random.in_box(1);
     const auto unsettled = scene.world()->counters().unsettled;
-    const driver::ForceCommand command = scene(at(p));
+    const driver::ForceCommand command = scene(support::tip_at(p));
     const Vector3d q = exact.follow(p);
     const Vector3d proxy = scene.world()->proxy();
     if (scene.world()->active_count() > 1) ++result.several;
