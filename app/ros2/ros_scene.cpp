@@ -18,10 +18,9 @@ RosObject described(const scene::SceneObjects& objects, std::size_t number,
   object.colour = scene::object_colour(number);
   const auto moving = objects.moving();
   object.moves = std::find(moving.begin(), moving.end(), number) != moving.end();
-  const render::TriangleMesh& mesh = objects.mesh_W();
-  const std::size_t end = objects.place(number + 1).triangle;
-  for (std::size_t i = objects.place(number).triangle; i < end; ++i) {
-    for (const int corner : mesh.triangles[i]) {
+  const render::TriangleMesh& mesh = objects.mesh_W(number);
+  for (const auto& triangle : mesh.triangles) {
+    for (const int corner : triangle) {
       const Eigen::Vector3d& p = mesh.vertices[static_cast<std::size_t>(corner)];
       object.corners_B.push_back({p.x(), p.y(), p.z()});
     }

@@ -329,12 +329,19 @@ StabilityLimits stability_limits(const scene::ArmFile& arm, const scene::LoopTim
 std::vector<std::string> stability_warnings(const scene::Scene& scene) {
   std::vector<std::string> warnings;
   if (!scene.arms.front().arm.can_simulate) return warnings;  // its tip is unknown
+  const scene::ArmFile& arm = scene.arms.front().arm;
+  const scene::LoopTimes times = loop_times(arm, scene.rate);
+  bool stable = true;
+  const scene::SceneObject* before = nullptr;  // object of `stable`
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > 0)) continue;
-    const scene::ArmFile& arm = scene.arms.front().arm;
-    const scene::LoopTimes times = loop_times(arm, scene.rate);
-    // The other limits are needed only for advice.
-    if (object.stiffness > WallLoop(arm, times, object.damping).edge()) {
+    // Many objects of a large scene are alike.
+    if (before == nullptr || object.stiffness != before->stiffness ||
+        object.damping != before->damping) {
+      stable = object.stiffness <= WallLoop(arm, times, object.damping).edge();
+      before = &object;
+    }
+    if (!stable) {  // the other limits are needed only for advice
       warnings.push_back(
           advice(scene, object, stability_limits(arm, times, object.stiffness, object.damping)));
     }

@@ -33,7 +33,7 @@ std::unique_ptr<ShapeTrace> trace_shapes(const scene::Scene& scene,
     if (!scene.objects[i].body.shape.named()) continue;
     shaped.push_back({.object = i,
                       .shape = objects.touch().object(i).shape(),
-                      .vertices = objects.place(i + 1).vertex - objects.place(i).vertex});
+                      .vertices = objects.mesh_W(i).vertices.size()});
   }
   if (shaped.empty()) return nullptr;
   return std::make_unique<ShapeTrace>(std::move(shaped));

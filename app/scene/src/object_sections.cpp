@@ -5,13 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "energy_guard_settings.h"
-#include "math/elementary.h"
 #include "surface/friction/friction_settings.h"
 #include "worst_direction.h"
 #include "yaml/yaml_settings.h"
@@ -58,68 +56,6 @@ const render::EffectKind* named_effect(YamlMap& entry) {
 }
 
 constexpr double kSideMin = 1e-4, kSideMax = 2;  // m, as for the size of meshes
-constexpr int kAround = 96;  // sides of a drawn sphere: its facets are within 0.03 % of the radius
-
-/// Adds a rectangle around `middle`. It has its own vertices, so its normals are not averaged with
-/// those of its neighbours.
-void add_rectangle(const Vector3d& middle, const Vector3d& u, const Vector3d& v,
-                   render::TriangleMesh& mesh) {
-  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
-  for (const auto& [a, b] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
-    mesh.vertices.emplace_back(middle + a * u + b * v);
-  }
-  mesh.triangles.push_back({first, first + 1, first + 2});
-  mesh.triangles.push_back({first, first + 2, first + 3});
-}
-
-render::TriangleMesh box_mesh(const render::Box& box) {
-  render::TriangleMesh mesh;
-  for (std::int32_t face = 0; face < 6; ++face) {
-    const Eigen::Index axis = face / 2, right = (axis + 1) % 3, up = (axis + 2) % 3;
-    const Vector3d n_W = box.normal(face);
-    const Vector3d v = box.half_sides[up] * box.R_WO.col(up);
-    const Vector3d u = (face % 2 == 0 ? -1 : 1) * box.half_sides[right] * box.R_WO.col(right);
-    add_rectangle(box.p_WO + box.half_sides[axis] * n_W, u, v, mesh);
-  }
-  return mesh;
-}
-
-constexpr int kRows = kAround / 2;
-
-/// Returns the directions from a sphere's centre to its vertices between the poles, row by row.
-std::vector<Vector3d> ball_directions() {
-  std::vector<Vector3d> directions;
-  for (int row = 1; row < kRows; ++row) {
-    const double down = std::numbers::pi * row / kRows;
-    for (int k = 0; k < kAround; ++k) {
-      const double round = 2 * std::numbers::pi * k / kAround;
-      directions.emplace_back(math::sin(down) * math::cos(round),
-                              math::sin(down) * math::sin(round), math::cos(down));
-    }
-  }
-  return directions;
-}
-
-render::TriangleMesh sphere_mesh(const render::Sphere& ball) {
-  static const std::vector<Vector3d> directions = ball_directions();
-  render::TriangleMesh mesh;
-  mesh.vertices.emplace_back(ball.p_WO + ball.radius * Vector3d::UnitZ());
-  for (const Vector3d& n : directions) mesh.vertices.emplace_back(ball.p_WO + ball.radius * n);
-  mesh.vertices.emplace_back(ball.p_WO - ball.radius * Vector3d::UnitZ());
-  const auto last = static_cast<std::int32_t>(mesh.vertices.size()) - 1;
-  const auto at = [](int row, int k) {
-    return static_cast<std::int32_t>(1 + (row - 1) * kAround + k % kAround);
-  };
-  for (int k = 0; k < kAround; ++k) {
-    mesh.triangles.push_back({0, at(1, k), at(1, k + 1)});
-    mesh.triangles.push_back({last, at(kRows - 1, k + 1), at(kRows - 1, k)});
-    for (int row = 1; row + 1 < kRows; ++row) {
-      mesh.triangles.push_back({at(row, k), at(row + 1, k), at(row + 1, k + 1)});
-      mesh.triangles.push_back({at(row, k), at(row + 1, k + 1), at(row, k + 1)});
-    }
-  }
-  return mesh;
-}
 
 SceneShape read_plane(YamlMap map, const Eigen::Matrix3d& R_WO, const Vector3d& p_WO) {
   Vector3d normal = map.optional_vector3("normal", Vector3d::UnitZ(), "", -1e3, 1e3);
@@ -129,18 +65,15 @@ SceneShape read_plane(YamlMap map, const Eigen::Matrix3d& R_WO, const Vector3d& 
     normal = Vector3d::UnitZ();
   }
   map.finish();
-  const Vector3d n_W = R_WO * normal.stableNormalized();
-  SceneShape shape{.shape_W = render::HalfSpace{.n_W = n_W, .p_WO = p_WO}, .mesh_W = {}};
-  const Vector3d u = n_W.unitOrthogonal();
-  add_rectangle(p_WO, drawn / 2 * u, drawn / 2 * n_W.cross(u), shape.mesh_W);
-  return shape;
+  return {.shape_W = render::HalfSpace{.n_W = R_WO * normal.stableNormalized(), .p_WO = p_WO},
+          .drawn_side = drawn};
 }
 
 SceneShape read_sphere(YamlMap map, const Vector3d& p_WO) {
   const render::Sphere ball{.p_WO = p_WO,
                             .radius = map.require_number("radius", "m", kSideMin, kSideMax)};
   map.finish();
-  return {ball, sphere_mesh(ball)};
+  return {.shape_W = ball};
 }
 
 SceneShape read_box(YamlMap map, const Eigen::Matrix3d& R_WO, const Vector3d& p_WO) {
@@ -148,8 +81,8 @@ SceneShape read_box(YamlMap map, const Eigen::Matrix3d& R_WO, const Vector3d& p_
   const render::Box box{.R_WO = R_WO, .p_WO = p_WO, .half_sides = sides / 2};
   const bool wedges = map.optional_choice("form", 0, {"entry_face", "wedges"}) == 1;
   map.finish();
-  if (wedges) return {render::WedgeBox{box}, box_mesh(box)};
-  return {render::EntryFaceBox{box}, box_mesh(box)};
+  if (wedges) return {.shape_W = render::WedgeBox{box}};
+  return {.shape_W = render::EntryFaceBox{box}};
 }
 
 }  // namespace

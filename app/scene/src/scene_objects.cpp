@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <mutex>
 #include <string>
+#include <unordered_map>
 #include <utility>
 
 #include "body/motion/move_object.h"
@@ -22,30 +24,6 @@ namespace {
 
 using MeshPointer = std::shared_ptr<const render::TriangleMesh>;
 
-/// Reads the mesh of every object and places it in the world (m). For a shape it is the mesh to
-/// draw; for a field or a page file it is empty.
-driver::Result<std::vector<MeshPointer>> load_meshes(const Scene& scene, SharedMeshes& meshes,
-                                                     std::vector<std::string>& notes) {
-  std::vector<MeshPointer> meshes_W;
-  const double reach = reach_of(scene);
-  for (const SceneObject& object : scene.objects) {
-    if (object.shape || object.build_field || object.paged) {
-      meshes_W.push_back(
-          meshes.mesh_like(object.shape ? object.shape->mesh_W : render::TriangleMesh()));
-      continue;
-    }
-    const auto loaded = meshes.object_mesh(object);
-    if (!loaded) return loaded.error();
-    const ObjectMesh& mesh = **loaded;
-    const auto judged = judge_size(object, mesh.size, reach);
-    if (!judged) return judged.error();
-    if (!judged->empty()) notes.push_back(*judged);
-    notes.insert(notes.end(), mesh.notes.begin(), mesh.notes.end());
-    meshes_W.emplace_back(*loaded, &mesh.mesh_W);
-  }
-  return meshes_W;
-}
-
 using Touched = driver::Result<std::unique_ptr<render::ObjectTouch>>;
 
 /// Returns the name of an object in messages: its file, or its name in the scene.
@@ -54,9 +32,9 @@ std::string name_of(const SceneObject& object) {
 }
 
 /// Returns a sentence with the remedy for a mesh that contact rejects; empty if there is none.
-std::string remedy_for(const SceneObject& object, const render::TriangleMesh& mesh_W) {
+std::string remedy_for(const SceneObject& object, const MeshPointer& mesh_W) {
   if (object.mesh_file.empty() || object.sheet_thickness) return {};
-  if (render::check_mesh(mesh_W).touchable()) return {};
+  if (render::check_mesh(*mesh_W).touchable()) return {};
   return object.repair ? " Set open: {thickness: 0.001} as well, to touch it as a sheet."
                        : " Set repair: true and, if that is not enough, open: {thickness: 0.001}; "
                          "`thimble mesh` "
@@ -72,7 +50,7 @@ render::SurfaceChoice surface_of(const SceneObject& object) {
 }
 
 /// Returns the error for an object that contact or a body rejects.
-driver::Error refused(const SceneObject& object, const render::TriangleMesh& mesh_W,
+driver::Error refused(const SceneObject& object, const MeshPointer& mesh_W,
                       const driver::Error& error) {
   return driver::Error{name_of(object) + ": " + error.message + remedy_for(object, mesh_W)};
 }
@@ -107,7 +85,7 @@ Touched build_one(const SceneObject& object, const MeshPointer& mesh_W, SharedMe
     touch = render::move_object(std::move(touch).value(), *mesh_W, *object.body.motion,
                                 object.coupling);
   }
-  if (!touch) return refused(object, *mesh_W, touch.error());
+  if (!touch) return refused(object, mesh_W, touch.error());
   return touch;
 }
 
@@ -130,37 +108,129 @@ driver::Result<render::SharedObject> build_shared(const SceneObject& object,
       continue;
     }
     auto touch = build_still(object, mesh_W, meshes);
-    if (!touch) return refused(object, *mesh_W, touch.error());
+    if (!touch) return refused(object, mesh_W, touch.error());
     shared.touches.push_back(std::move(touch).value());
   }
   if (!object.body.motion) return shared;
   auto moved = render::move_shared_object(std::move(shared.touches), *mesh_W, *object.body.motion,
                                           object.coupling);
-  if (!moved) return refused(object, *mesh_W, moved.error());
+  if (!moved) return refused(object, mesh_W, moved.error());
   return moved;
 }
 
 }  // namespace
 
+/// Meshes of all objects. Those of shapes, and that of all objects, are made when they are asked
+/// for.
+struct SceneObjects::Meshes {
+  explicit Meshes(std::shared_ptr<SharedMeshes> shared) : store(std::move(shared)) {}
+
+  driver::Result<void> load(const Scene& scene, std::vector<std::string>& notes);
+  const MeshPointer& of(std::size_t object);
+  void join();
+
+  std::shared_ptr<SharedMeshes> store;
+  std::mutex mutex;                // for all below
+  std::vector<MeshPointer> own_W;  // null: not made yet
+  // Objects whose meshes are not made yet, and their shapes.
+  std::unordered_map<std::size_t, SceneShape> shapes;
+  MeshPointer all_W;              // null: not made yet
+  std::vector<MeshPlace> places;  // of each object in `all_W`, plus the end
+
+ private:
+  const MeshPointer& made(std::size_t object);
+};
+
+/// Reads the mesh files of all objects and places them in the world (m). A shape keeps none; the
+/// mesh of a field or of a page file is empty.
+driver::Result<void> SceneObjects::Meshes::load(const Scene& scene,
+                                                std::vector<std::string>& notes) {
+  const double reach = reach_of(scene);
+  const auto empty = std::make_shared<const render::TriangleMesh>();
+  own_W.reserve(scene.objects.size());
+  for (const SceneObject& object : scene.objects) {
+    if (object.shape) {
+      shapes.emplace(own_W.size(), *object.shape);
+      own_W.emplace_back();
+      continue;
+    }
+    if (object.build_field || object.paged) {
+      own_W.push_back(empty);
+      continue;
+    }
+    const auto loaded = store->object_mesh(object);
+    if (!loaded) return loaded.error();
+    const ObjectMesh& mesh = **loaded;
+    const auto judged = judge_size(object, mesh.size, reach);
+    if (!judged) return judged.error();
+    if (!judged->empty()) notes.push_back(*judged);
+    notes.insert(notes.end(), mesh.notes.begin(), mesh.notes.end());
+    own_W.emplace_back(*loaded, &mesh.mesh_W);
+  }
+  return {};
+}
+
+const MeshPointer& SceneObjects::Meshes::of(std::size_t object) {
+  const std::scoped_lock lock(mutex);
+  return made(object);
+}
+
+const MeshPointer& SceneObjects::Meshes::made(std::size_t object) {
+  if (!own_W[object]) own_W[object] = store->mesh_like(shapes.at(object).mesh_W());
+  return own_W[object];
+}
+
+void SceneObjects::Meshes::join() {
+  const std::scoped_lock lock(mutex);
+  if (all_W) return;
+  places.assign(1, {});
+  for (std::size_t i = 0; i < own_W.size(); ++i) {
+    const MeshPlace& begin = places.back();
+    const render::TriangleMesh& mesh_W = *made(i);
+    places.push_back(
+        {begin.vertex + mesh_W.vertices.size(), begin.triangle + mesh_W.triangles.size()});
+  }
+  all_W = store->joined(own_W);
+}
+
+SceneObjects::SceneObjects() = default;
+SceneObjects::~SceneObjects() = default;
+
+const render::TriangleMesh& SceneObjects::mesh_W() const {
+  meshes_->join();
+  return *meshes_->all_W;
+}
+
+const MeshPointer& SceneObjects::shared_mesh_W(std::size_t object) const {
+  return meshes_->of(object);
+}
+
+const MeshPlace& SceneObjects::place(std::size_t object) const {
+  meshes_->join();
+  return meshes_->places[object];
+}
+
 driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(
     const Scene& scene, const std::shared_ptr<SharedMeshes>& meshes) {
   const auto held = meshes ? meshes : std::make_shared<SharedMeshes>();
   std::unique_ptr<SceneObjects> objects(new SceneObjects);
-  auto loaded = load_meshes(scene, *held, objects->notes_);
-  if (!loaded) return loaded.error();
-  const std::vector<MeshPointer>& meshes_W = objects->meshes_W_ = std::move(loaded).value();
+  objects->meshes_ = std::make_unique<Meshes>(held);
+  if (auto loaded = objects->meshes_->load(scene, objects->notes_); !loaded) return loaded.error();
   const std::size_t arms = scene.arms.size();
   const double reach = reach_of(scene);
   std::vector<std::vector<std::unique_ptr<render::ObjectTouch>>> touches(arms);
-  for (std::size_t i = 0; i < meshes_W.size(); ++i) {
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
+    // Only a shape that moves needs its mesh, for its mass.
+    const bool needs_mesh = !object.shape || object.body.motion;
+    const MeshPointer mesh_W = needs_mesh ? objects->shared_mesh_W(i) : nullptr;
     if (arms == 1) {
-      auto touch = build_one(object, meshes_W[i], *held, reach, objects->pages_);
+      auto touch = build_one(object, mesh_W, *held, reach, objects->pages_);
       if (!touch) return touch.error();
       touches[0].push_back(std::move(touch).value());
       continue;
     }
-    auto shared = build_shared(object, meshes_W[i], *held, arms);
+    auto shared = build_shared(object, mesh_W, *held, arms);
     if (!shared) return shared.error();
     for (std::size_t arm = 0; arm < arms; ++arm) {
       touches[arm].push_back(std::move(shared->touches[arm]));
@@ -170,14 +240,8 @@ driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(
   for (auto& objects_of_arm : touches) {
     objects->touches_.push_back(std::make_unique<render::SceneTouch>(std::move(objects_of_arm)));
   }
-  objects->mesh_W_ = held->joined(meshes_W);
-  objects->places_.emplace_back();
-  for (std::size_t i = 0; i < meshes_W.size(); ++i) {
-    const render::TriangleMesh& mesh_W = *meshes_W[i];
-    if (!scene.objects[i].shape) objects->triangles_ += mesh_W.triangles.size();
-    const MeshPlace begin = objects->places_.back();
-    objects->places_.push_back(
-        {begin.vertex + mesh_W.vertices.size(), begin.triangle + mesh_W.triangles.size()});
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (!scene.objects[i].shape) objects->triangles_ += objects->mesh_W(i).triangles.size();
     if (scene.objects[i].body.motion) objects->moving_.push_back(i);
   }
   for (const auto& pages : objects->pages_) {

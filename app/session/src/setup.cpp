@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <unordered_set>
 #include <utility>
 
 #include "arm/report_timeout.h"
@@ -220,10 +222,17 @@ driver::Result<void> Setup::use_real_arm(std::size_t i, const RealArmUse& use) {
 }
 
 driver::Result<void> Setup::simulate_arms() {
+  std::unordered_set<std::string_view>
+      touched;  // objects that a hand follows; only these need meshes
+  for (const scene::SceneArm& arm : plan_.scene->arms) {
+    for (const scene::HandWaypoint& waypoint : arm.hand) {
+      if (waypoint.on) touched.insert(*waypoint.on);
+    }
+  }
   std::vector<std::pair<std::string, std::shared_ptr<const render::TriangleMesh>>> named;
   for (std::size_t i = 0; i < plan_.scene->objects.size(); ++i) {
     const scene::SceneObject& object = plan_.scene->objects[i];
-    if (object.build_field || object.paged) continue;
+    if (object.build_field || object.paged || !touched.contains(object.name)) continue;
     named.emplace_back(object.name, objects_->shared_mesh_W(i));
   }
   using Simulated = driver::Result<std::unique_ptr<scene::ArmSimulation>>;

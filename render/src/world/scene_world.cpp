@@ -32,7 +32,7 @@ SceneTouch::SceneTouch(std::vector<std::unique_ptr<ObjectTouch>> objects)
   std::vector<ContactWorld::Member> members;
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const auto solids = objects_[i]->solids();
-    const auto object = static_cast<std::int16_t>(i);
+    const std::int16_t object = object_number(i);
     for (WorldSolid* solid : solids) members.push_back({.solid = solid, .object = object});
     if (solids.empty()) felt_.push_back({.touch = objects_[i].get(), .object = object});
   }
@@ -43,7 +43,7 @@ SceneTouch::SceneTouch(std::vector<std::unique_ptr<ObjectTouch>> objects)
   }
   felt_.clear();
   for (std::size_t i = 0; i < objects_.size(); ++i) {
-    felt_.push_back({.touch = objects_[i].get(), .object = static_cast<std::int16_t>(i)});
+    felt_.push_back({.touch = objects_[i].get(), .object = object_number(i)});
   }
 }
 

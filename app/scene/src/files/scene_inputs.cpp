@@ -1,6 +1,7 @@
 #include "files/scene_inputs.h"
 
 #include <algorithm>
+#include <charconv>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -15,6 +16,13 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kScanScheme = "cgal:";
 
+/// Returns whether a word is a number, of which a large scene has many.
+bool is_number(std::string_view word) {
+  double number = 0;
+  const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), number);
+  return status == std::errc() && end == word.data() + word.size();
+}
+
 void add_named(const std::string& word, const fs::path& folder, std::vector<fs::path>& files) {
   constexpr std::size_t kNameMax = 4096;  // bytes [S limits.h, PATH_MAX]
   if (word.empty() || word.size() > kNameMax) return;
@@ -23,9 +31,10 @@ void add_named(const std::string& word, const fs::path& folder, std::vector<fs::
     if (auto scan = find_scan(word.substr(kScanScheme.size()))) files.push_back(*scan);
     return;
   }
-  const fs::path path = folder / word;
   // Every word of the text is tried. Numbers and keys are not files.
-  if (word.find('.') != std::string::npos && fs::exists(path, status) &&
+  if (word.find('.') == std::string::npos || is_number(word)) return;
+  const fs::path path = folder / word;
+  if (fs::exists(path, status) &&
       (fs::is_regular_file(path, status) || fs::is_directory(path / ".", status)) &&
       path.filename() != "." && path.filename() != "..") {
     files.push_back(path);

@@ -1,12 +1,14 @@
 #include "thimble/scene/shared_meshes.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
 #include <optional>
 #include <system_error>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "meshes/mesh_join.h"
@@ -82,6 +84,18 @@ class MeshCache {
   std::vector<std::pair<Key, std::shared_ptr<const Value>>> entries_;
 };
 
+std::uint64_t hash_of(const render::TriangleMesh& mesh) {
+  std::uint64_t hash = mesh.triangles.size();
+  for (const Eigen::Vector3d& p : mesh.vertices) {
+    // The terms make -0 equal to 0, as for ==.
+    for (const double x : {p.x() + 0.0, p.y() + 0.0, p.z() + 0.0}) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15;
+      hash ^= hash >> 29;
+    }
+  }
+  return hash;
+}
+
 bool same(const render::TriangleMesh& a, const render::TriangleMesh& b) {
   return a.vertices == b.vertices && a.triangles == b.triangles;
 }
@@ -91,7 +105,7 @@ bool same(const render::TriangleMesh& a, const render::TriangleMesh& b) {
 struct SharedMeshes::Held {
   std::mutex mutex;
   MeshCache<MeshKey, ObjectMesh> files;
-  std::vector<MeshPointer> shapes;
+  std::unordered_multimap<std::uint64_t, MeshPointer> shapes;  // by `hash_of`
   MeshCache<std::vector<MeshPointer>, render::TriangleMesh> joined;
   MeshCache<std::pair<MeshPointer, render::ContactChoice>, render::StillSurface> surfaces;
   MeshCache<std::pair<std::vector<HandWaypoint>, NamedPointers>, HandRoute> routes;
@@ -117,7 +131,7 @@ void SharedMeshes::drop_unused() {
   held_->surfaces.drop_if([](const auto& still) { return still->search.use_count() == 1; });
   held_->joined.drop_unused();
   held_->files.drop_unused();
-  std::erase_if(held_->shapes, [](const MeshPointer& mesh) { return mesh.use_count() == 1; });
+  std::erase_if(held_->shapes, [](const auto& shape) { return shape.second.use_count() == 1; });
 }
 
 driver::Result<std::shared_ptr<const ObjectMesh>> SharedMeshes::object_mesh(
@@ -131,11 +145,13 @@ driver::Result<std::shared_ptr<const ObjectMesh>> SharedMeshes::object_mesh(
 }
 
 MeshPointer SharedMeshes::mesh_like(const render::TriangleMesh& mesh_W) {
+  const std::uint64_t hash = hash_of(mesh_W);
   const std::scoped_lock lock(held_->mutex);
-  for (const MeshPointer& shape : held_->shapes) {
-    if (same(*shape, mesh_W)) return shape;
+  const auto [first, last] = held_->shapes.equal_range(hash);
+  for (auto shape = first; shape != last; ++shape) {
+    if (same(*shape->second, mesh_W)) return shape->second;
   }
-  return held_->shapes.emplace_back(std::make_shared<const render::TriangleMesh>(mesh_W));
+  return held_->shapes.emplace(hash, std::make_shared<const render::TriangleMesh>(mesh_W))->second;
 }
 
 MeshPointer SharedMeshes::joined(const std::vector<MeshPointer>& meshes_W) {

@@ -1,5 +1,5 @@
 #include <fmt/format.h>
-#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -15,42 +15,7 @@
 namespace thimble::scene {
 namespace {
 
-constexpr std::uintmax_t kFileSizeMax = 4u << 20;  // [chosen: 1000 times our largest scene]
-
-/// Event handler that records only the line at which the last document begins.
-class DocumentStarts final : public YAML::EventHandler {
- public:
-  void OnDocumentStart(const YAML::Mark& mark) override { line_ = mark.line + 1; }
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                       YAML::EmitterStyle::value) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                  YAML::EmitterStyle::value) override {}
-  void OnMapEnd() override {}
-
-  int line() const { return line_; }
-
- private:
-  int line_ = 0;
-};
-
-/// Returns the line in which a second document begins; 0 if there is none. Loading all documents
-/// might not terminate: before a comma outside of any list, the parser makes no progress and
-/// returns one empty document after the other. Throws the exceptions of yaml-cpp.
-int line_of_second_document(const std::string& text) {
-  std::istringstream stream(text);
-  YAML::Parser parser(stream);
-  DocumentStarts starts;
-  for (int document = 0; document < 2; ++document) {
-    if (!parser.HandleNextDocument(starts)) return 0;
-  }
-  return starts.line();
-}
+constexpr std::uintmax_t kFileSizeMax = 16u << 20;  // [chosen: 150,000 objects of a line each]
 
 std::string in_file(const std::string& file, int line, const std::string& sentence) {
   const std::string place = line > 0 ? file + ":" + std::to_string(line) : file;
@@ -136,7 +101,8 @@ driver::Result<YamlFile> YamlFile::load(const std::filesystem::path& file) {
   if (!text) {
     std::error_code status;
     if (driver::is_regular(file) && std::filesystem::file_size(file, status) > kFileSizeMax) {
-      return driver::Error{name + ": is larger than 4 MB, so it cannot be a scene or an arm file."};
+      return driver::Error{name +
+                           ": is larger than 16 MB, so it cannot be a scene or an arm file."};
     }
     return driver::Error{file.string() + ": " + text.error().message};
   }
@@ -151,14 +117,14 @@ driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::str
   }
   mistakes->set_misplaced(find_misplaced_blanks(text));
   try {
-    const int second = line_of_second_document(text);
-    const YAML::Node document = second > 0 ? YAML::Node() : YAML::Load(text);
-    if (second > 0) {
-      mistakes->add(second, "expected one document, found a second one; remove it");
-    } else if (document.IsNull()) {
+    const YamlDocument document = read_yaml(text);
+    if (document.second_begins_at > 0) {
+      mistakes->add(document.second_begins_at,
+                    "expected one document, found a second one; remove it");
+    } else if (document.root.is_null()) {
       mistakes->add(0, "is empty; expected a map of keys and values");
     } else {
-      YamlMap root(document, "", 1, mistakes);
+      YamlMap root(document.root, "", 1, mistakes);
       if (mistakes->empty()) return YamlFile(std::move(root), mistakes);
     }
   } catch (const YAML::Exception& problem) {

@@ -26,31 +26,38 @@ KeyValues choice_values(ValueType type, const std::vector<std::string_view>& cho
 
 }  // namespace
 
-YamlMap::YamlMap(const YAML::Node& node, std::string_view name, int line,
+YamlMap::YamlMap(const YamlNode& node, std::string_view name, int line,
                  std::shared_ptr<YamlMistakes> mistakes)
     : mistakes_(std::move(mistakes)), line_(line_of(node, line)) {
-  if (!node.IsMap()) {
+  if (!node.is_map()) {
     quiet_ = true;
     const std::string prefix = name.empty() ? "" : std::string(name) + ": ";
     mistakes_->add(line_, prefix + "expected a map of keys and values, found " + found(node));
     return;
   }
-  std::unordered_map<std::string_view, int> lines;  // by key; `node` owns the texts
-  for (const auto& pair : node) {
-    const int key_line = line_of(pair.first, line_);
-    if (!pair.first.IsScalar()) {
-      mistakes_->add(key_line, "expected a word as key, found " + found(pair.first));
-      continue;
+  constexpr std::size_t kFew = 16;  // [chosen: a search among them is faster than a hash]
+  std::unordered_map<std::string_view, int> lines;  // by key, if there are many
+  entries_.reserve(node.size());
+  node.each_pair([&](const YamlNode& key_node, const YamlNode& value) {
+    const int key_line = line_of(key_node, line_);
+    if (!key_node.is_scalar()) {
+      mistakes_->add(key_line, "expected a word as key, found " + found(key_node));
+      return;
     }
-    const std::string& key = pair.first.Scalar();
-    const auto [first, fresh] = lines.try_emplace(key, key_line);
-    if (!fresh) {
-      mistakes_->add(key_line, key + ": occurs twice, first in line " +
-                                   std::to_string(first->second) + "; keep one of them");
-      continue;
+    const std::string_view key = key_node.text();  // `node` owns the text
+    int first = 0;
+    if (node.size() <= kFew) {
+      first = this->key_line(key);
+    } else if (const auto [known, fresh] = lines.try_emplace(key, key_line); !fresh) {
+      first = known->second;
     }
-    entries_.push_back({key, key_line, pair.second});
-  }
+    if (first != 0) {
+      mistakes_->add(key_line, std::string(key) + ": occurs twice, first in line " +
+                                   std::to_string(first) + "; keep one of them");
+      return;
+    }
+    entries_.push_back({std::string(key), key_line, value});
+  });
 }
 
 const YamlMap::Entry* YamlMap::find(std::string_view key, bool required) {
@@ -96,7 +103,7 @@ void YamlMap::expected(const Entry& entry, const std::string& what) {
                  entry.key + ": expected " + what + ", found " + found(entry.value));
 }
 
-bool YamlMap::read_number(const Entry& entry, const YAML::Node& node, const std::string& what,
+bool YamlMap::read_number(const Entry& entry, const YamlNode& node, std::string_view unit,
                           double min, double max, double& number) {
   const std::optional<double> value = to_number(node);
   // Written so that NaN is rejected.
@@ -104,12 +111,13 @@ bool YamlMap::read_number(const Entry& entry, const YAML::Node& node, const std:
     number = *value;
     return true;
   }
-  mistakes_->add(line_of(node, entry.line),
-                 entry.key + ": expected " + what + ", found " + found_value(node));
+  mistakes_->add(
+      line_of(node, entry.line),
+      entry.key + ": expected " + number_in_words(unit, min, max) + ", found " + found_value(node));
   return false;
 }
 
-bool YamlMap::read_whole(const Entry& entry, const YAML::Node& node, const std::string& what,
+bool YamlMap::read_whole(const Entry& entry, const YamlNode& node, const std::string& what,
                          std::int64_t min, std::int64_t max, std::int64_t& number) {
   const std::optional<std::int64_t> value = to_whole(node);
   if (value && *value >= min && *value <= max) {
@@ -128,18 +136,22 @@ bool YamlMap::has(std::string_view key) {
 
 double YamlMap::require_number(std::string_view key, std::string_view unit, double min,
                                double max) {
-  note(key, {ValueType::kNumber, min, max}, number_in_words(unit, min, max), true);
+  if (logs_keys()) {
+    note(key, {ValueType::kNumber, min, max}, number_in_words(unit, min, max), true);
+  }
   double number = min;
   if (const Entry* entry = find(key, true)) {
-    read_number(*entry, entry->value, number_in_words(unit, min, max), min, max, number);
+    read_number(*entry, entry->value, unit, min, max, number);
   }
   return number;
 }
 
 double YamlMap::optional_number(std::string_view key, double fallback, std::string_view unit,
                                 double min, double max) {
-  note(key, {ValueType::kNumber, min, max}, number_in_words(unit, min, max), false,
-       in_words(fallback));
+  if (logs_keys()) {
+    note(key, {ValueType::kNumber, min, max}, number_in_words(unit, min, max), false,
+         in_words(fallback));
+  }
   return has(key) ? require_number(key, unit, min, max) : fallback;
 }
 
@@ -164,7 +176,7 @@ std::int64_t YamlMap::optional_whole(std::string_view key, std::int64_t fallback
 const YamlMap::Entry* YamlMap::find_three(std::string_view key, std::string_view what) {
   const Entry* entry = find(key, true);
   if (entry == nullptr) return nullptr;
-  if (entry->value.IsSequence() && entry->value.size() == 3) return entry;
+  if (entry->value.is_list() && entry->value.size() == 3) return entry;
   expected(*entry, "a list of three " + std::string(what));
   return nullptr;
 }
@@ -213,14 +225,16 @@ std::array<std::int64_t, 3> YamlMap::require_signs(std::string_view key) {
 
 Eigen::Vector3d YamlMap::require_vector3(std::string_view key, std::string_view unit, double min,
                                          double max) {
-  note(key, {ValueType::kThreeNumbers, min, max}, three_in_words(unit, min, max), true);
+  if (logs_keys()) {
+    note(key, {ValueType::kThreeNumbers, min, max}, three_in_words(unit, min, max), true);
+  }
   Eigen::Vector3d vector = Eigen::Vector3d::Zero();
   const Entry* entry =
       find_three(key, "numbers" + (unit.empty() ? "" : " in " + std::string(unit)));
   if (entry == nullptr) return vector;
   for (std::size_t i = 0; i < 3; ++i) {
     double number = 0;
-    if (!read_number(*entry, entry->value[i], number_in_words(unit, min, max), min, max, number)) {
+    if (!read_number(*entry, entry->value[i], unit, min, max, number)) {
       return Eigen::Vector3d::Zero();
     }
     vector[static_cast<Eigen::Index>(i)] = number;
@@ -230,9 +244,11 @@ Eigen::Vector3d YamlMap::require_vector3(std::string_view key, std::string_view 
 
 Eigen::Vector3d YamlMap::optional_vector3(std::string_view key, const Eigen::Vector3d& fallback,
                                           std::string_view unit, double min, double max) {
-  note(key, {ValueType::kThreeNumbers, min, max}, three_in_words(unit, min, max), false,
-       '[' + in_words(fallback.x()) + ", " + in_words(fallback.y()) + ", " +
-           in_words(fallback.z()) + ']');
+  if (logs_keys()) {
+    note(key, {ValueType::kThreeNumbers, min, max}, three_in_words(unit, min, max), false,
+         '[' + in_words(fallback.x()) + ", " + in_words(fallback.y()) + ", " +
+             in_words(fallback.z()) + ']');
+  }
   return has(key) ? require_vector3(key, unit, min, max) : fallback;
 }
 
@@ -242,38 +258,42 @@ Eigen::Matrix3d YamlMap::optional_rotation(std::string_view key) {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   const Entry* entry = find(key, false);
   if (entry == nullptr) return R;
-  if (!entry->value.IsSequence()) {
+  if (!entry->value.is_list()) {
     expected(*entry, what);
     return R;
   }
-  for (const YAML::Node& turn : entry->value) {
-    const bool is_pair = turn.IsSequence() && turn.size() == 2 && turn[0].IsScalar();
-    const std::string axis = is_pair ? turn[0].Scalar() : "";
+  bool rotated = true;
+  entry->value.each_entry([&](const YamlNode& turn) {
+    if (!rotated) return;
+    const bool is_pair = turn.is_list() && turn.size() == 2 && turn[0].is_scalar();
+    const std::string_view axis = is_pair ? turn[0].text() : std::string_view();
     if (axis != "x" && axis != "y" && axis != "z") {
       mistakes_->add(line_of(turn, entry->line), entry->key + ": expected " + what + ", found " +
                                                      (is_pair ? in_quotes(axis) : found(turn)));
-      return Eigen::Matrix3d::Identity();
+      rotated = false;
+      return;
     }
     double degrees = 0;
-    if (!read_number(*entry, turn[1], number_in_words("degrees", -360, 360), -360, 360, degrees)) {
-      return Eigen::Matrix3d::Identity();
+    if (!read_number(*entry, turn[1], "degrees", -360, 360, degrees)) {
+      rotated = false;
+      return;
     }
     R = driver::rotation_about(static_cast<driver::FrameAxis>(axis[0] - 'x'),
                                degrees * std::numbers::pi / 180) *
         R;
-  }
-  return R;
+  });
+  return rotated ? R : Eigen::Matrix3d::Identity();
 }
 
 std::string YamlMap::require_string(std::string_view key) {
   note(key, {ValueType::kText}, "a text", true);
   const Entry* entry = find(key, true);
   if (entry == nullptr) return "";
-  if (!entry->value.IsScalar() || entry->value.Scalar().empty()) {
+  if (!entry->value.is_scalar() || entry->value.text().empty()) {
     expected(*entry, "a text");
     return "";
   }
-  return entry->value.Scalar();
+  return std::string(entry->value.text());
 }
 
 std::string YamlMap::optional_string(std::string_view key, std::string_view fallback) {
@@ -299,17 +319,16 @@ std::vector<std::size_t> YamlMap::optional_choices(std::string_view key,
   const Entry* entry = find(key, false);
   if (entry == nullptr) return fallback;
   std::vector<std::size_t> chosen;
-  if (entry->value.IsScalar()) {
+  if (entry->value.is_scalar()) {
     if (const auto one = choice_of(entry->value, choices)) chosen.push_back(*one);
-  } else if (entry->value.IsSequence()) {
-    for (const YAML::Node& node : entry->value) {
+  } else if (entry->value.is_list()) {
+    bool known = true;
+    entry->value.each_entry([&](const YamlNode& node) {
       const auto one = choice_of(node, choices);
-      if (!one) {
-        chosen.clear();
-        break;
-      }
-      chosen.push_back(*one);
-    }
+      known = known && one;
+      if (known) chosen.push_back(*one);
+    });
+    if (!known) chosen.clear();
   }
   if (chosen.empty()) expected(*entry, what);
   return chosen;
@@ -327,8 +346,8 @@ bool YamlMap::optional_bool(std::string_view key, bool fallback) {
   const Entry* entry = find(key, false);
   if (entry == nullptr) return fallback;
   if (is_plain_scalar(entry->value)) {
-    if (entry->value.Scalar() == "true") return true;
-    if (entry->value.Scalar() == "false") return false;
+    if (entry->value.text() == "true") return true;
+    if (entry->value.text() == "false") return false;
   }
   mistakes_->add(line_of(entry->value, entry->line),
                  entry->key + ": expected true or false, found " + found_value(entry->value));
@@ -343,7 +362,7 @@ YamlMap YamlMap::require_map(std::string_view key) {
     map.place_ = place;
     return map;
   }
-  YamlMap absent(YAML::Node(YAML::NodeType::Map), key, line_, mistakes_);
+  YamlMap absent(YamlNode::empty_map(), key, line_, mistakes_);
   absent.quiet_ = true;
   absent.place_ = place;
   return absent;
@@ -358,19 +377,20 @@ std::vector<YamlMap> YamlMap::require_maps(std::string_view key) {
   if (entry == nullptr) {
     if (mistakes_->keys() == nullptr) return maps;
     // An entry without values, so that its keys are requested and logged.
-    maps.emplace_back(YAML::Node(YAML::NodeType::Map), key, line_, mistakes_);
+    maps.emplace_back(YamlNode::empty_map(), key, line_, mistakes_);
     maps.back().quiet_ = true;
     maps.back().place_ = place;
     return maps;
   }
-  if (!entry->value.IsSequence() || entry->value.size() == 0) {
+  if (!entry->value.is_list() || entry->value.size() == 0) {
     expected(*entry, "a list with at least one entry");
     return maps;
   }
-  for (const YAML::Node& node : entry->value) {
+  maps.reserve(entry->value.size());
+  entry->value.each_entry([&](const YamlNode& node) {
     maps.emplace_back(node, key, entry->line, mistakes_);
     maps.back().place_ = place;
-  }
+  });
   return maps;
 }
 

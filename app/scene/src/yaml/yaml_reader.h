@@ -1,7 +1,5 @@
 #pragma once
 
-#include <yaml-cpp/yaml.h>
-
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
@@ -16,6 +14,7 @@
 #include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "yaml/key_log.h"
+#include "yaml/yaml_node.h"
 #include "yaml/yaml_text.h"
 
 namespace thimble::scene {
@@ -96,7 +95,7 @@ class YamlMap {
  public:
   /// Constructs the map at `node`. Records a mistake if the node is not a map, or if a key occurs
   /// twice. `name` is the key of the map.
-  YamlMap(const YAML::Node& node, std::string_view name, int line,
+  YamlMap(const YamlNode& node, std::string_view name, int line,
           std::shared_ptr<YamlMistakes> mistakes);
 
   /// Returns whether a key is present (and marks it as known).
@@ -214,16 +213,18 @@ class YamlMap {
   struct Entry {
     std::string key;
     int line = 0;
-    YAML::Node value;
+    YamlNode value;
   };
 
   const Entry* find(std::string_view key, bool required);
+  /// Whether requested keys are logged; only then the arguments of `note` are made.
+  bool logs_keys() const noexcept { return mistakes_->keys() != nullptr; }
   void note(std::string_view key, KeyValues values, std::string what, bool required,
             std::string fallback = {});
   void expected(const Entry& entry, const std::string& what);
-  bool read_number(const Entry& entry, const YAML::Node& node, const std::string& what, double min,
+  bool read_number(const Entry& entry, const YamlNode& node, std::string_view unit, double min,
                    double max, double& number);
-  bool read_whole(const Entry& entry, const YAML::Node& node, const std::string& what,
+  bool read_whole(const Entry& entry, const YamlNode& node, const std::string& what,
                   std::int64_t min, std::int64_t max, std::int64_t& number);
   const Entry* find_three(std::string_view key, std::string_view what);
   int line_for(std::string_view key);
@@ -240,7 +241,7 @@ class YamlMap {
 /// YAML file whose root is a map.
 class THIMBLE_EXPORT YamlFile {
  public:
-  /// Reads a file. Fails if the file cannot be read, is empty or larger than 4 MB, is not UTF-8
+  /// Reads a file. Fails if the file cannot be read, is empty or larger than 16 MB, is not UTF-8
   /// (with line and column), or is not YAML (with line).
   static driver::Result<YamlFile> load(const std::filesystem::path& file);
 

@@ -14,11 +14,9 @@ constexpr std::size_t kFoundLengthMax =
 
 }  // namespace
 
-int line_of(const YAML::Node& node, int fallback) {
+int line_of(const YamlNode& node, int fallback) {
   // The parser marks a missing value where it detected it, which may be the next line.
-  if (node.IsNull()) return fallback;
-  const YAML::Mark mark = node.Mark();
-  return mark.is_null() ? fallback : mark.line + 1;
+  return node.is_null() || node.line() == 0 ? fallback : node.line();
 }
 
 std::string in_quotes(std::string_view text) {
@@ -34,27 +32,23 @@ std::string in_quotes(std::string_view text) {
   return result;
 }
 
-std::string found(const YAML::Node& node) {
-  switch (node.Type()) {
-    case YAML::NodeType::Undefined:
-    case YAML::NodeType::Null:
+std::string found(const YamlNode& node) {
+  switch (node.type()) {
+    case YamlNode::Type::kNull:
       return "nothing";
-    case YAML::NodeType::Scalar:
-      return in_quotes(node.Scalar());
-    case YAML::NodeType::Sequence:
+    case YamlNode::Type::kScalar:
+      return in_quotes(node.text());
+    case YamlNode::Type::kList:
       return "a list of " + std::to_string(node.size());
-    case YAML::NodeType::Map:
+    case YamlNode::Type::kMap:
       return "a map";
   }
   return "nothing";
 }
 
-std::string found_value(const YAML::Node& node) {
-  const bool quoted = node.IsScalar() && !is_plain_scalar(node);
-  if (!quoted) return found(node);
-  const YAML::Node plain(node.Scalar());
-  const std::string& text = plain.Scalar();
-  const bool is_value = to_number(plain) || text == "true" || text == "false";
+std::string found_value(const YamlNode& node) {
+  const bool is_value = node.is_scalar() && node.is_quoted() &&
+                        (to_number(node.text()) || node.text() == "true" || node.text() == "false");
   return found(node) + (is_value ? ", a text because of its quotes; remove the quotes" : "");
 }
 
@@ -70,14 +64,16 @@ std::string number_in_words(std::string_view unit, double min, double max) {
   return text;
 }
 
-// yaml-cpp gives a scalar in quotes the tag "!"; such a scalar is always a text.
-bool is_plain_scalar(const YAML::Node& node) {
-  return node.IsScalar() && node.Tag() != "!";
+// A scalar in quotes is always a text.
+bool is_plain_scalar(const YamlNode& node) {
+  return node.is_scalar() && !node.is_quoted();
 }
 
-std::optional<double> to_number(const YAML::Node& node) {
-  if (!is_plain_scalar(node)) return std::nullopt;
-  std::string_view text = node.Scalar();
+std::optional<double> to_number(const YamlNode& node) {
+  return is_plain_scalar(node) ? to_number(node.text()) : std::nullopt;
+}
+
+std::optional<double> to_number(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double number = 0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -85,11 +81,13 @@ std::optional<double> to_number(const YAML::Node& node) {
   return number;
 }
 
-std::optional<std::int64_t> to_whole(const YAML::Node& node) {
+std::optional<std::int64_t> to_whole(const YamlNode& node) {
+  return is_plain_scalar(node) ? to_whole(node.text()) : std::nullopt;
+}
+
+std::optional<std::int64_t> to_whole(std::string_view text) {
   constexpr std::int64_t kExactIntegerMax = std::int64_t{1}
                                             << 53;  // up to here every integer is a double
-  if (!is_plain_scalar(node)) return std::nullopt;
-  std::string_view text = node.Scalar();
   if (text.starts_with('+')) text.remove_prefix(1);
   std::int64_t number = 0;
   const char* const last = text.data() + text.size();
@@ -97,7 +95,7 @@ std::optional<std::int64_t> to_whole(const YAML::Node& node) {
       end != last || status != std::errc()) {
     // 1e3 and 7.0 are integers. The limit is exclusive, because a larger value may have been
     // rounded to it.
-    const std::optional<double> decimal = to_number(node);
+    const std::optional<double> decimal = to_number(text);
     if (!decimal || !(std::abs(*decimal) < static_cast<double>(kExactIntegerMax)))
       return std::nullopt;
     if (*decimal != std::floor(*decimal)) return std::nullopt;
@@ -107,10 +105,10 @@ std::optional<std::int64_t> to_whole(const YAML::Node& node) {
   return number;
 }
 
-std::optional<std::size_t> choice_of(const YAML::Node& node,
+std::optional<std::size_t> choice_of(const YamlNode& node,
                                      const std::vector<std::string_view>& choices) {
-  if (!node.IsScalar()) return std::nullopt;
-  const auto found = std::find(choices.begin(), choices.end(), node.Scalar());
+  if (!node.is_scalar()) return std::nullopt;
+  const auto found = std::find(choices.begin(), choices.end(), node.text());
   if (found == choices.end()) return std::nullopt;
   return static_cast<std::size_t>(found - choices.begin());
 }

@@ -1,16 +1,30 @@
 #include "figures/figures_of.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
 #include "figures/lost_contacts.h"
 
 namespace thimble::session {
+namespace {
+
+constexpr std::size_t kNamesMax = 20;  // names of objects in a sentence [chosen]
+
+}  // namespace
 
 RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& records,
                       driver::ServoEnd end, const driver::RealTimeGrant& grant) {
   const driver::Device& device = setup.device(arm);
   RunFigures figures;
   figures.scene = setup.scene().name;
-  for (const scene::SceneObject& object : setup.scene().objects) {
-    figures.object += (figures.object.empty() ? "" : ", ") + object.name;
+  const auto& objects = setup.scene().objects;
+  for (std::size_t i = 0; i < std::min(objects.size(), kNamesMax); ++i) {
+    figures.object += (figures.object.empty() ? "" : ", ") + objects[i].name;
+  }
+  if (objects.size() > kNamesMax) {
+    figures.object += fmt::format(" and {} others", objects.size() - kNamesMax);
   }
   figures.arm = setup.arm_file(arm).name;
   figures.simulated_arm = setup.simulation(arm) != nullptr;

@@ -20,7 +20,7 @@ double length(const std::array<double, 3>& v) noexcept {
 
 LiveKnobs::LiveKnobs(const scene::Scene& scene, render::SceneTouch& touch) {
   const scene::DeclaredLimits& declared = scene.arms.front().arm.declared;
-  for (std::size_t i = 0; i < touch.size(); ++i) {
+  for (std::size_t i = 0; i < touch.size() && knobs_.size() <= kKnobsMax; ++i) {
     render::LiveSettings settings(declared.stiffness, declared.damping);
     touch.object(i).list_settings(settings);
     std::ptrdiff_t stiffness = -1;

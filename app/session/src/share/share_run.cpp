@@ -21,6 +21,8 @@ constexpr int kRunsOfAScene = 100;  // largest number of simultaneous runs of on
 driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const LiveKnobs& knobs,
                                                      const SessionOptions& options,
                                                      SharedRun* before) {
+  // Before the meshes of many shapes are made.
+  if (auto fits = check_object_count(setup.scene().objects.size()); !fits) return fits.error();
   std::vector<std::string> devices;
   for (std::size_t i = 0; i < setup.arms(); ++i) devices.push_back(setup.device_name(i));
   SharedScene scene = describe_scene(setup.scene(), setup.objects(), devices);
@@ -54,8 +56,7 @@ std::vector<RunSharing::Shaped> shaped_objects(const Setup& setup) {
   for (std::size_t i = 0; i < setup.scene().objects.size(); ++i) {
     if (!setup.scene().objects[i].body.shape.named()) continue;
     const render::BodyShape* shape = setup.objects().touch().object(i).shape();
-    const std::size_t vertices =
-        setup.objects().place(i + 1).vertex - setup.objects().place(i).vertex;
+    const std::size_t vertices = setup.objects().mesh_W(i).vertices.size();
     shaped.push_back({.shape = shape,
                       .first = first,
                       .first_split = first_split,

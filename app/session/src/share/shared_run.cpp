@@ -94,14 +94,17 @@ driver::Result<std::unique_ptr<SharedRun>> SharedRun::create_next(SharedRun& bef
   return made;
 }
 
+driver::Result<void> check_object_count(std::size_t count) {
+  if (count <= kObjectsMax) return {};
+  return driver::Error{"A scene with more than " + std::to_string(kObjectsMax) +
+                       " objects cannot be shown; run it with --no-view."};
+}
+
 driver::Result<std::unique_ptr<SharedRun>> SharedRun::make(const std::string& name,
                                                            const SharedMemory* before,
                                                            const SharedScene& scene,
                                                            std::size_t ring_ticks) {
-  if (scene.objects.size() > kObjectsMax) {
-    return driver::Error{"A scene with more than " + std::to_string(kObjectsMax) +
-                         " objects cannot be shown; run it with --no-view."};
-  }
+  if (auto fits = check_object_count(scene.objects.size()); !fits) return fits.error();
   SharedHead head{};
   const std::uint64_t bytes = lay_out(scene, ring_ticks, head);
   if (!name.empty()) remove_dead_runs();

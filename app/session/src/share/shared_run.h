@@ -20,6 +20,10 @@ struct EdgeSplit;
 
 namespace thimble::session {
 
+/// Returns an error if a scene has more objects than viewers can show. Real-time: never from the
+/// servo thread.
+driver::Result<void> check_object_count(std::size_t count);
+
 /// Run's access to the memory that it shares with its viewers. The servo stores its state and reads
 /// requests, and never waits.
 class SharedRun final : public KnobRequests {

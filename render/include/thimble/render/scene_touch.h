@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -14,6 +15,13 @@
 namespace thimble::render {
 
 class ContactWorld;
+
+/// Returns the number by which a touch names object `i` of a scene: -1, unnamed, from the 32,768th
+/// object on. Real-time: safe.
+constexpr std::int16_t object_number(std::size_t i) noexcept {
+  return i <= std::numeric_limits<std::int16_t>::max() ? static_cast<std::int16_t>(i)
+                                                       : std::int16_t{-1};
+}
 
 /// Force law of a scene. The tip feels the union of all solids of its objects (render/src/world);
 /// the forces of the other objects, such as fields, are added. The contact information is that of
@@ -69,7 +77,7 @@ class THIMBLE_EXPORT SceneTouch {
       if (!objects_[i]->draw(patch)) continue;
       any = true;
       if (patch.triangle_count == 0) continue;
-      patch.object = static_cast<std::int16_t>(i);
+      patch.object = object_number(i);
       break;
     }
     return any;

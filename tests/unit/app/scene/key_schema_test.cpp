@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <span>
 #include <sstream>
@@ -22,19 +23,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool is_plain(const YAML::Node& value) {
+  return value.IsScalar() && value.Tag() != "!";
+}
+
+std::optional<double> number_of(const YAML::Node& value) {
+  return is_plain(value) ? to_number(value.Scalar()) : std::nullopt;
+}
+
 bool has_type(const YAML::Node& value, const std::string& type) {
   if (type == "object") return value.IsMap();
   if (type == "array") return value.IsSequence();
   if (type == "string") return value.IsScalar();
-  if (type == "number") return to_number(value).has_value();
-  if (type == "integer") return to_whole(value).has_value();
+  if (type == "number") return number_of(value).has_value();
+  if (type == "integer") return is_plain(value) && to_whole(value.Scalar()).has_value();
   const bool is_bool = value.IsScalar() && (value.Scalar() == "true" || value.Scalar() == "false");
-  return type == "boolean" && is_plain_scalar(value) && is_bool;
+  return type == "boolean" && is_plain(value) && is_bool;
 }
 
 bool equals(const YAML::Node& value, const YAML::Node& allowed) {
-  const auto number = to_number(allowed);
-  if (number) return to_number(value) == number;
+  const auto number = number_of(allowed);
+  if (number) return number_of(value) == number;
   return value.IsScalar() && value.Scalar() == allowed.Scalar();
 }
 
@@ -94,8 +103,8 @@ std::string flaw_of(const YAML::Node& schema, const YAML::Node& value) {
     if (!fits) return "wrong type";
   }
   if (schema["minLength"] && value.Scalar().empty()) return "empty text";
-  if (schema["minimum"] && *to_number(value) < *to_number(schema["minimum"])) return "too small";
-  if (schema["maximum"] && *to_number(value) > *to_number(schema["maximum"])) return "too large";
+  if (schema["minimum"] && *number_of(value) < *number_of(schema["minimum"])) return "too small";
+  if (schema["maximum"] && *number_of(value) > *number_of(schema["maximum"])) return "too large";
   if (schema["const"] && !equals(value, schema["const"])) return "another word";
   if (schema["enum"]) {
     bool listed = false;

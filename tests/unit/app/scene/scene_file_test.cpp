@@ -296,7 +296,7 @@ TEST(SceneFile, DrawsShapesWhereTheyAre) {
       kWait);
   ASSERT_TRUE(scene.ok()) << scene.error().message;
   for (const scene::SceneObject& object : scene->objects) {
-    const auto& mesh = object.shape->mesh_W;
+    const render::TriangleMesh mesh = object.shape->mesh_W();
     ASSERT_FALSE(mesh.triangles.empty());
     double volume = 0;
     for (const auto& t : mesh.triangles) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -19,6 +20,7 @@
 #include "support/scratch.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/scene_touch.h"
+#include "thimble/scene/scene_objects.h"
 #include "thimble/session/session.h"
 
 namespace thimble {
@@ -104,6 +106,53 @@ TEST_F(SharedMeshesTest, DependOnPlaceSizeAndContact) {
   EXPECT_EQ(drawn(*aside)->vertices[0].x(), drawn(*plain)->vertices[0].x() + 0.01);
   EXPECT_EQ(meshes->meshes(), 3U);
   EXPECT_EQ(meshes->surfaces(), 4U);
+}
+
+/// Returns a scene of spheres in a row, and a hand that stays away from them.
+std::string sphere_scene(int count) {
+  std::string text = "name: spheres\narm: vintage_phantom\nduration: 0.01\nobjects:\n";
+  for (int i = 0; i < count; ++i) {
+    text += "  - {name: s" + std::to_string(i) + ", sphere: {radius: 0.001}, position: [" +
+            std::to_string(1e-4 * i) + ", 0, -0.03], stiffness: 400}\n";
+  }
+  return text + "hand:\n  path:\n    - {t: 0, at: [0, 0, 0.02]}\n";
+}
+
+TEST_F(SharedMeshesTest, OfShapesAreMadeOnceWhenTheyAreAskedFor) {
+  const auto file = support::scratch_folder() / "three_spheres.yaml";
+  std::ofstream(file) << sphere_scene(3);
+  const auto meshes = std::make_shared<SharedMeshes>();
+  const auto run = open(file, meshes);
+  const scene::SceneObjects& objects = run->setup().objects();
+  EXPECT_EQ(meshes->meshes(), 0U);
+  EXPECT_FALSE(objects.mesh_W(1).triangles.empty());
+  EXPECT_EQ(meshes->meshes(), 1U);
+  std::vector<std::thread> threads;
+  std::vector<const render::TriangleMesh*> all(8);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    threads.emplace_back([&, i] { all[i] = &objects.mesh_W(); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(std::count(all.begin(), all.end(), all[0]), 8);
+  EXPECT_EQ(meshes->meshes(), 4U) << "three and all of them";
+  const std::size_t vertices = objects.mesh_W(0).vertices.size();
+  EXPECT_EQ(objects.mesh_W().vertices.size(), 3 * vertices);
+  EXPECT_EQ(objects.place(2).vertex, 2 * vertices);
+  EXPECT_EQ(objects.mesh_W().vertices[2 * vertices], objects.mesh_W(2).vertices[0]);
+  const auto again = open(file, meshes);
+  EXPECT_EQ(&again->setup().objects().mesh_W(), all[0]);
+  EXPECT_EQ(meshes->meshes(), 4U);
+}
+
+TEST_F(SharedMeshesTest, ARunOfManyShapesMakesNone) {
+  const auto file = support::scratch_folder() / "many_spheres.yaml";
+  std::ofstream(file) << sphere_scene(10'000);
+  const auto meshes = std::make_shared<SharedMeshes>();
+  const auto run = open(file, meshes);
+  ASSERT_NE(run, nullptr);
+  run->run();
+  EXPECT_EQ(run->scene().objects.size(), 10'000U);
+  EXPECT_EQ(meshes->meshes(), 0U);
 }
 
 TEST_F(SharedMeshesTest, AreReadAgainIfTheirFileHasChanged) {

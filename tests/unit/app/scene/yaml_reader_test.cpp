@@ -36,6 +36,14 @@ TEST(YamlReader, ReadsValidValues) {
   EXPECT_EQ(mistakes_in("stiffness: 800\nname: arm\nplace: [0.1, -1, +1e-1]\nkind: ideal\n"), "");
 }
 
+TEST(YamlReader, ReadsAliasesAsTheirAnchors) {
+  EXPECT_EQ(mistakes_in("stiffness: &k 800\nplace: &p [0.1, 0, *k]\n"),
+            "arm.yaml:1: place: expected a number from -1 to 1 m, found \"800\".");
+  EXPECT_EQ(mistakes_in("stiffness: 800\nparts: [&a {mass: 0.1}, *a, *a]\n"), "");
+  EXPECT_EQ(mistakes_in("stiffness: 800\nparts: [&a {mass: *a}]\n"),
+            "arm.yaml:2: mass: expected a number from 0 to 1 kg, found a map.");
+}
+
 TEST(YamlReader, NonNumberErrorNamesFileLineAndRange) {
   EXPECT_EQ(mistakes_in("name: a\nstiffness: stiff\n"),
             "arm.yaml:2: stiffness: expected a number from 0 to 100000 N/m, found \"stiff\".");

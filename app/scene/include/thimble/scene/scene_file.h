@@ -24,9 +24,13 @@
 namespace thimble::scene {
 
 /// Shape used as an object of a scene instead of a mesh.
-struct SceneShape {
-  render::Primitive shape_W;    ///< Shape that is touched.
-  render::TriangleMesh mesh_W;  ///< Mesh to draw and for the hand's path; it cannot be touched.
+struct THIMBLE_EXPORT SceneShape {
+  render::Primitive shape_W;  ///< Shape that is touched.
+  double drawn_side = 0.1;    ///< Side of the square that is drawn of a plane, m.
+
+  /// Returns the mesh to draw, for the hand's path and for the mass of a moving body, in the world,
+  /// m. It cannot be touched. Makes the mesh at each call. Real-time: never from the servo thread.
+  render::TriangleMesh mesh_W() const;
 };
 
 /// Material of an object. Empty members are not used.

@@ -38,6 +38,10 @@ class THIMBLE_EXPORT SceneObjects {
   static driver::Result<std::unique_ptr<SceneObjects>> build(
       const Scene& scene, const std::shared_ptr<SharedMeshes>& meshes = nullptr);
 
+  ~SceneObjects();
+  SceneObjects(const SceneObjects&) = delete;
+  SceneObjects& operator=(const SceneObjects&) = delete;
+
   /// Returns the force law of the whole scene for one arm.
   render::SceneTouch& touch(std::size_t arm = 0) const { return *touches_[arm]; }
   /// Advances the bodies that several arms touch by `step` (s). Does nothing with one arm, whose
@@ -46,19 +50,22 @@ class THIMBLE_EXPORT SceneObjects {
   void step_bodies(double step) noexcept;
   /// Returns the bodies that several arms touch, in the order of `moving`; empty with one arm.
   std::span<const std::shared_ptr<render::SharedBody>> shared_bodies() const { return bodies_; }
+
+  // A shape has no mesh until one of the following functions is called: it is touched without.
+  // The mesh is then made once. Any thread. Real-time: never from the servo thread.
+
   /// Returns the initial meshes of all objects as one, in the world, m. Includes touched meshes and
   /// the meshes that represent shapes; excludes objects paged from disk.
-  const render::TriangleMesh& mesh_W() const { return *mesh_W_; }
+  const render::TriangleMesh& mesh_W() const;
   /// Returns the initial mesh of one object, in the world, m; empty for a field and for an object
   /// paged from disk.
-  const render::TriangleMesh& mesh_W(std::size_t object) const { return *meshes_W_[object]; }
+  const render::TriangleMesh& mesh_W(std::size_t object) const { return *shared_mesh_W(object); }
   /// Returns the same mesh as a shared pointer, to keep it or to compare it with that of another
   /// scene.
-  const std::shared_ptr<const render::TriangleMesh>& shared_mesh_W(std::size_t object) const {
-    return meshes_W_[object];
-  }
+  const std::shared_ptr<const render::TriangleMesh>& shared_mesh_W(std::size_t object) const;
   /// Returns the offsets of an object in `mesh_W`.
-  const MeshPlace& place(std::size_t object) const { return places_[object]; }
+  const MeshPlace& place(std::size_t object) const;
+
   /// Returns the current mesh of one object, moved and deformed (W, m). If `object` is negative,
   /// returns all objects as one mesh. Not while the servo runs.
   render::TriangleMesh mesh_now(int object = -1) const;
@@ -81,15 +88,13 @@ class THIMBLE_EXPORT SceneObjects {
   std::optional<render::PagingCounters> paging() const;
 
  private:
-  SceneObjects() = default;
+  SceneObjects();
 
   std::vector<std::shared_ptr<render::PagedSurface>> pages_;  // Of the objects paged from disk.
   std::vector<std::unique_ptr<render::SceneTouch>> touches_;  // One per arm.
   std::vector<std::shared_ptr<render::SharedBody>> bodies_;
-  std::vector<std::shared_ptr<const render::TriangleMesh>> meshes_W_;  // Of each object.
-  std::shared_ptr<const render::TriangleMesh> mesh_W_;                 // Of all objects.
-  // Of each object in mesh_W_, plus the end.
-  std::vector<MeshPlace> places_;
+  struct Meshes;
+  std::unique_ptr<Meshes> meshes_;
   std::vector<std::size_t> moving_;
   std::size_t triangles_ = 0;
   std::vector<std::string> notes_;
