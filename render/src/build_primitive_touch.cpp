@@ -4,6 +4,7 @@
 
 #include "build_surface_touch.h"
 #include "field/entry_face_contact.h"
+#include "field/faced_contact.h"
 #include "field/primitive_contact.h"
 
 namespace thimble::render {
@@ -15,6 +16,8 @@ std::unique_ptr<ObjectTouch> build_primitive_touch(const Primitive& shape_W,
         using Shape = std::decay_t<decltype(shape)>;
         if constexpr (std::is_same_v<Shape, EntryFaceBox>) {
           return build_surface_touch(EntryFaceContact(shape), surface);
+        } else if constexpr (std::is_same_v<Shape, Cylinder> || std::is_same_v<Shape, Cone>) {
+          return build_surface_touch(FacedContact<Shape>(shape), surface);
         } else {
           return build_surface_touch(PrimitiveContact<Shape>(shape), surface);
         }

@@ -85,6 +85,26 @@ SceneShape read_box(YamlMap map, const Eigen::Matrix3d& R_WO, const Vector3d& p_
   return {.shape_W = render::EntryFaceBox{box}};
 }
 
+/// Radius and half height of a shape.
+struct RoundSize {
+  double radius = 0, half_height = 0;
+};
+
+RoundSize read_size(YamlMap map) {
+  const double radius = map.require_number("radius", "m", kSideMin, kSideMax);
+  const double height = map.require_number("height", "m", kSideMin, kSideMax);
+  map.finish();
+  return {.radius = radius, .half_height = height / 2};
+}
+
+SceneShape read_torus(YamlMap map, const render::RoundFrame& frame) {
+  const double radius = map.require_number("radius", "m", kSideMin, kSideMax);
+  const double tube = map.require_number("tube", "m", kSideMin, kSideMax);
+  if (!(tube < radius)) map.reject("tube", "must be less than radius, so that the ring has a hole");
+  map.finish();
+  return {.shape_W = render::Torus{frame, radius, tube}};
+}
+
 }  // namespace
 
 render::EffectContext effect_context_of(const ArmFile& arm, double rate) {
@@ -132,6 +152,20 @@ std::optional<SceneShape> read_shape(YamlMap& object, const Eigen::Matrix3d& R_W
   if (object.has("plane")) return read_plane(object.require_map("plane"), R_WO, p_WO);
   if (object.has("sphere")) return read_sphere(object.require_map("sphere"), p_WO);
   if (object.has("box")) return read_box(object.require_map("box"), R_WO, p_WO);
+  const render::RoundFrame frame{.R_WO = R_WO, .p_WO = p_WO};
+  if (object.has("cylinder")) {
+    const RoundSize size = read_size(object.require_map("cylinder"));
+    return SceneShape{.shape_W = render::Cylinder{frame, size.radius, size.half_height}};
+  }
+  if (object.has("capsule")) {
+    const RoundSize size = read_size(object.require_map("capsule"));
+    return SceneShape{.shape_W = render::Capsule{frame, size.radius, size.half_height}};
+  }
+  if (object.has("cone")) {
+    const RoundSize size = read_size(object.require_map("cone"));
+    return SceneShape{.shape_W = render::Cone{frame, size.radius, size.half_height}};
+  }
+  if (object.has("torus")) return read_torus(object.require_map("torus"), frame);
   return {};
 }
 

@@ -34,8 +34,9 @@ THIMBLE_EXPORT std::vector<render::EffectPlan> read_effects(YamlMap& object,
 render::FieldBuilder read_field(YamlMap& object, const std::filesystem::path& folder,
                                 const render::EffectContext& context);
 
-/// Reads `plane`, `sphere` or `box` of an object at p_WO (m) with the rotation R_WO; empty if it
-/// has none of them. Mistakes are recorded in `object`. Real-time: never from the servo thread.
+/// Reads the shape of an object (`plane`, `sphere`, `box`, `cylinder`, `capsule`, `cone`, `torus`)
+/// at p_WO (m) with the rotation R_WO; empty if it has none. Mistakes are recorded in `object`.
+/// Real-time: never from the servo thread.
 std::optional<SceneShape> read_shape(YamlMap& object, const Eigen::Matrix3d& R_WO,
                                      const Eigen::Vector3d& p_WO);
 

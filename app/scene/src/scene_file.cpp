@@ -131,9 +131,15 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   SceneObject object;
   object.name = map.require_string("name");
   int forms = 0;
-  for (const char* form : {"mesh", "plane", "sphere", "box", "field"}) forms += map.has(form);
+  for (const char* form :
+       {"mesh", "plane", "sphere", "box", "cylinder", "capsule", "cone", "torus", "field"}) {
+    forms += map.has(form);
+  }
   if (forms > 1) {
-    map.refuse("", "expected one of mesh, plane, sphere, box and field, found several; keep one");
+    map.refuse(
+        "",
+        "expected one of mesh, plane, sphere, box, cylinder, capsule, cone, torus and field, "
+        "found several; keep one");
     return object;
   }
   object.R_WO = map.optional_rotation("rotate_degrees");

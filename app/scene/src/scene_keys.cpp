@@ -28,7 +28,9 @@ std::string scene_of_everything() {
     text += fmt::format("{}{{{}: {}}}", text.ends_with('[') ? "" : ", ", kind.group, kind.name);
   }
   text += "]}\n  - {name: plane, plane: {}}\n  - {name: sphere, sphere: {}}\n";
-  text += "  - {name: box, box: {}}\n";
+  for (const char* shape : {"box", "cylinder", "capsule", "cone", "torus"}) {
+    text += fmt::format("  - {{name: {}, {}: {{}}}}\n", shape, shape);
+  }
   for (const render::FieldKind& kind : render::field_table()) {
     text += fmt::format("  - {{name: field_{}, field: {}}}\n", kind.name, kind.name);
   }

@@ -14,9 +14,9 @@
 
 namespace thimble::render {
 
-/// A solid whose force depends only on the position of the tip [BP 2]: a plane, a sphere, a box in
-/// wedges. `n_before_W` is the last felt normal (zero if none), for positions without a unique
-/// normal.
+/// A solid whose force depends only on the position of the tip [BP 2]: a plane, a sphere, a
+/// capsule, a torus, a box in wedges. `n_before_W` is the last felt normal (zero if none), for
+/// positions without a unique normal.
 template <class Shape>
 concept PrimitiveShape = requires(const Shape& shape, const Eigen::Vector3d& p_W,
                                   const Eigen::Vector3d& n_before_W) {
@@ -81,9 +81,12 @@ class PrimitiveContact {
 
   /// Returns the surface point below the tip and its derivative by the tip (surface_response.h).
   /// Precondition: the last `update` touches. Real-time: safe.
-  ClosestSurfacePoint closest(const Eigen::Vector3d&) const noexcept {
+  ClosestSurfacePoint closest(const Eigen::Vector3d& p_WT) const noexcept {
     ClosestSurfacePoint closest = flat_closest_point(state_);
-    if constexpr (requires { shape_.stretch(state_.depth); }) {
+    if constexpr (requires { shape_.derivative(p_WT, PrimitivePlace{}); }) {
+      closest.J_MT = shape_.derivative(
+          p_WT, {.depth = state_.depth, .n_W = state_.n_W, .face = state_.triangle});
+    } else if constexpr (requires { shape_.stretch(state_.depth); }) {
       const double stretch = shape_.stretch(state_.depth);
       // At a centre no surface point is the closest.
       closest.J_MT *= std::isfinite(stretch) ? stretch : 0;

@@ -8,12 +8,15 @@
 #include <utility>
 
 #include "field/entry_face_contact.h"
+#include "field/faced_contact.h"
 #include "field/primitive_contact.h"
+#include "field/round_entry.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_law.h"
 #include "thimble/render/contact_state.h"
 #include "thimble/render/field/box.h"
 #include "thimble/render/field/half_space.h"
+#include "thimble/render/field/round_shapes.h"
 #include "thimble/render/field/sphere.h"
 #include "thimble/render/object_touch.h"
 #include "track/path_bounded.h"
@@ -81,6 +84,30 @@ inline SolidBox box_of(const Box& box) noexcept {
   return {box.p_WO - reach, box.p_WO + reach};
 }
 
+/// Returns the box of a solid of revolution that reaches `along` its axis, and `across` it at all
+/// heights; `around` is added in all directions.
+inline SolidBox round_box(const RoundFrame& frame, double along, double across,
+                          double around) noexcept {
+  const Eigen::Array3d axis_W = frame.R_WO.col(2).array();
+  // A margin for rounding, also of the direction of the axis.
+  const Eigen::Vector3d reach =
+      (1 + 0x1p-40) *
+      (along * axis_W.abs() + across * (1 - axis_W.square()).max(0x1p-40).sqrt() + around);
+  return {frame.p_WO - reach, frame.p_WO + reach};
+}
+inline SolidBox box_of(const Cylinder& cylinder) noexcept {
+  return round_box(cylinder, cylinder.half_height, cylinder.radius, 0);
+}
+inline SolidBox box_of(const Cone& cone) noexcept {
+  return round_box(cone, cone.half_height, cone.radius, 0);
+}
+inline SolidBox box_of(const Capsule& capsule) noexcept {
+  return round_box(capsule, capsule.half_height, 0, capsule.radius);
+}
+inline SolidBox box_of(const Torus& torus) noexcept {
+  return round_box(torus, 0, torus.radius, torus.tube);
+}
+
 template <class Law>
 struct ShapeContact : std::false_type {};
 template <class Shape, class... Stages>
@@ -88,6 +115,9 @@ struct ShapeContact<ContactForceLaw<PathBounded<PrimitiveContact<Shape>>, Stages
     : std::true_type {};
 template <class... Stages>
 struct ShapeContact<ContactForceLaw<PathBounded<EntryFaceContact>, Stages...>> : std::true_type {};
+template <class Shape, class... Stages>
+struct ShapeContact<ContactForceLaw<PathBounded<FacedContact<Shape>>, Stages...>> : std::true_type {
+};
 
 }  // namespace shape_solid
 
@@ -95,9 +125,10 @@ struct ShapeContact<ContactForceLaw<PathBounded<EntryFaceContact>, Stages...>> :
 template <class Law>
 concept ShapeLaw = shape_solid::ShapeContact<Law>::value;
 
-/// WorldSolid over the force law of a shape without a mesh. The shape is convex: the closest point
-/// of a sphere, a plane, or the entered face of a box is the proxy that it can reach. The wedges of
-/// a box may change to a face inside another solid; then the plane of the last face holds.
+/// WorldSolid over the force law of a shape without a mesh. The closest point of a plane, of a
+/// rounded shape, or of the face through which the proxy entered is the proxy that it can reach.
+/// The wedges of a box may change to a face inside another solid; then the plane of the last face
+/// holds.
 template <ShapeLaw Law>
 class ShapeSolid final : public WorldSolid {
  public:

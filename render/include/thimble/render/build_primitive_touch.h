@@ -7,6 +7,7 @@
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/field/box.h"
 #include "thimble/render/field/half_space.h"
+#include "thimble/render/field/round_shapes.h"
 #include "thimble/render/field/sphere.h"
 #include "thimble/render/object_touch.h"
 
@@ -16,7 +17,8 @@ namespace thimble::render {
 struct EntryFaceBox : Box {};
 
 /// Any shape without a mesh.
-using Primitive = std::variant<HalfSpace, Sphere, WedgeBox, EntryFaceBox>;
+using Primitive =
+    std::variant<HalfSpace, Sphere, WedgeBox, EntryFaceBox, Cylinder, Cone, Capsule, Torus>;
 
 /// Builds the force law of one shape (W, m) from only the stages that `surface` names. The caller
 /// provides unit normals and sizes above 0. Real-time: never from the servo thread.

@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <fstream>
+#include <map>
 #include <string>
 
 #include "support/scratch.h"
@@ -287,14 +291,50 @@ TEST(SceneFile, ReadsShapesAndFields) {
   EXPECT_NEAR(scene->objects[4].build_field()->update(state).f_T_W.z(), -0.980665, 1e-12);
 }
 
+TEST(SceneFile, ReadsRoundShapes) {
+  const auto scene = scene_from(
+      "  - {name: can, cylinder: {radius: 0.02, height: 0.05}, position: [0.01, 0, 0], "
+      "rotate_degrees: [[x, 90]], stiffness: 3}\n"
+      "  - {name: pill, capsule: {radius: 0.02, height: 0.05}, stiffness: 3}\n"
+      "  - {name: hat, cone: {radius: 0.02, height: 0.05}, stiffness: 3}\n"
+      "  - {name: ring, torus: {radius: 0.02, tube: 0.005}, stiffness: 3}\n",
+      kWait);
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  const auto shape = [&](std::size_t i) { return scene->objects[i].shape->shape_W; };
+  const auto can = std::get<render::Cylinder>(shape(0));
+  EXPECT_TRUE(can.inside({0.029, 0.024, 0}));  // along y
+  EXPECT_FALSE(can.inside({0.01, 0, 0.024}));
+  EXPECT_TRUE(std::get<render::Capsule>(shape(1)).inside({0, 0, 0.044}));
+  const auto hat = std::get<render::Cone>(shape(2));
+  EXPECT_TRUE(hat.inside({0, 0, 0.024}));
+  EXPECT_FALSE(hat.inside({0.015, 0, 0.024}));
+  EXPECT_TRUE(hat.inside({0.015, 0, -0.024}));
+  const auto ring = std::get<render::Torus>(shape(3));
+  EXPECT_TRUE(ring.inside({0, 0.024, 0}));
+  EXPECT_FALSE(ring.inside({0, 0, 0}));
+}
+
 TEST(SceneFile, DrawsShapesWhereTheyAre) {
   const auto scene = scene_from(
       "  - {name: ball, sphere: {radius: 0.02}, position: [0.01, 0, 0], stiffness: 400}\n"
       "  - {name: block, box: {sides: [0.01, 0.02, 0.03]}, rotate_degrees: [[x, 30]], stiffness: "
       "3}\n"
-      "  - {name: wall, plane: {normal: [1, 1, 0], drawn_side: 0.2}, stiffness: 400}\n",
+      "  - {name: wall, plane: {normal: [1, 1, 0], drawn_side: 0.2}, stiffness: 400}\n"
+      "  - {name: can, cylinder: {radius: 0.02, height: 0.05}, rotate_degrees: [[x, 30]], "
+      "stiffness: 3}\n"
+      "  - {name: pill, capsule: {radius: 0.02, height: 0.05}, rotate_degrees: [[x, 30]], "
+      "stiffness: 3}\n"
+      "  - {name: hat, cone: {radius: 0.02, height: 0.05}, rotate_degrees: [[x, 30]], stiffness: "
+      "3}\n"
+      "  - {name: ring, torus: {radius: 0.02, tube: 0.005}, rotate_degrees: [[x, 30]], stiffness: "
+      "3}\n",
       kWait);
   ASSERT_TRUE(scene.ok()) << scene.error().message;
+  constexpr double kPi = 3.14159265358979;
+  const std::map<std::string, double> volumes{{"can", kPi * 4e-4 * 0.05},
+                                              {"pill", kPi * 4e-4 * 0.05 + 4.0 / 3 * kPi * 8e-6},
+                                              {"hat", kPi * 4e-4 * 0.05 / 3},
+                                              {"ring", 2 * kPi * 0.02 * kPi * 2.5e-5}};
   for (const scene::SceneObject& object : scene->objects) {
     const render::TriangleMesh mesh = object.shape->mesh_W();
     ASSERT_FALSE(mesh.triangles.empty());
@@ -308,6 +348,13 @@ TEST(SceneFile, DrawsShapesWhereTheyAre) {
           [&](const auto& shape) {
             if constexpr (requires { shape.place(vertex, vertex); }) {
               return shape.place(vertex, vertex).depth;
+            } else if constexpr (requires { shape.kSide; }) {
+              // On one face, and below no other.
+              double least = std::abs(shape.on_face(vertex, 0, vertex).depth);
+              for (std::int32_t face = 1; face <= shape.kSide; ++face) {
+                least = std::min(least, std::abs(shape.on_face(vertex, face, vertex).depth));
+              }
+              return least;
             } else {
               return render::WedgeBox{shape}.place(vertex, vertex).depth;
             }
@@ -321,6 +368,10 @@ TEST(SceneFile, DrawsShapesWhereTheyAre) {
     }
     if (object.name == "block") {
       EXPECT_NEAR(volume, 6e-6, 1e-15);
+    }
+    if (const auto known = volumes.find(object.name); known != volumes.end()) {
+      EXPECT_NEAR(volume, known->second, 4e-3 * known->second) << object.name;
+      EXPECT_LT(volume, known->second) << object.name;
     }
   }
 }
@@ -343,6 +394,18 @@ TEST(SceneFile, ReportsMistakesInShapesAndFields) {
       wrong("sphere: {radius: 0.1}, stiffness: 1, contact: {tracker: offset}").find("contact"),
       std::string::npos);
   EXPECT_NE(wrong("sphere: {radius: 0.1}, plane: {}, stiffness: 1").find("found several"),
+            std::string::npos);
+  for (const char* shape : {"cylinder", "capsule", "cone"}) {
+    const std::string name = shape;
+    EXPECT_NE(wrong(name + ": {radius: 0.1}, stiffness: 1").find("height: is missing"),
+              std::string::npos);
+    EXPECT_NE(wrong(name + ": {radius: 0, height: 0.1}, stiffness: 1").find("radius"),
+              std::string::npos);
+    EXPECT_NE(wrong(name + ": {radius: 0.1, height: 0.1}, box: {sides: [1, 1, 1]}, stiffness: 1")
+                  .find("found several"),
+              std::string::npos);
+  }
+  EXPECT_NE(wrong("torus: {radius: 0.01, tube: 0.01}, stiffness: 1").find("less than radius"),
             std::string::npos);
   EXPECT_NE(wrong("field: magic").find("field"), std::string::npos);
   EXPECT_NE(wrong("field: gravity").find("mass"), std::string::npos);

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -161,6 +163,92 @@ TEST(WorldCurved, TheProxyRestsAgainstOverlappingSpheresAndAPlane) {
   if (all.off_count > 0) return;
   EXPECT_LT(all.off, 1e-9 * kSize);
   EXPECT_LT(all.force_off, 1e-6);
+}
+
+/// Normals of the surfaces within 1e-6 m of a point, by sampling directions of a shape's distance.
+std::vector<Vector3d> normals_near(const Primitive& primitive, const Vector3d& q, bool& inside) {
+  std::vector<Vector3d> normals;
+  std::visit(
+      [&](const auto& shape) {
+        if constexpr (requires { shape.kSide; }) {
+          inside = inside || shape.inside(q);
+          for (std::int32_t face = 0; face <= shape.kSide; ++face) {
+            // Just below the face, where it is felt.
+            const Vector3d n = shape.on_face(q, face, Vector3d::Zero()).n_W;
+            const PrimitivePlace place = shape.on_face(q - 1e-6 * n, face, Vector3d::Zero());
+            if (place.depth > 0 && place.depth < 2e-6) normals.push_back(place.n_W);
+          }
+        } else if constexpr (requires { shape.place(q, q); }) {
+          inside = inside || shape.inside(q);
+          const PrimitivePlace place = shape.place(q, Vector3d::Zero());
+          if (std::abs(place.depth) < 1e-6) normals.push_back(place.n_W);
+        }
+      },
+      primitive);
+  return normals;
+}
+
+Primitive random_round_shape(Random& random) {
+  const Vector3d axis = random.direction();
+  Eigen::Matrix3d R;
+  R.col(2) = axis;
+  R.col(0) = axis.unitOrthogonal();
+  R.col(1) = axis.cross(R.col(0));
+  const RoundFrame frame{.R_WO = R, .p_WO = random.in_box(0.015)};
+  const double radius = random.uniform(0.008, 0.02), half_height = random.uniform(0.008, 0.02);
+  switch (static_cast<int>(random.uniform(0, 4))) {
+    case 0:
+      return Cylinder{frame, radius, half_height};
+    case 1:
+      return Cone{frame, radius, half_height};
+    case 2:
+      return Capsule{frame, radius, half_height};
+    default:
+      return Torus{frame, radius + 0.01, 0.8 * radius};
+  }
+}
+
+TEST(WorldCurved, TheProxyRestsAgainstTwoRoundShapesThatOverlap) {
+  const int scenes = support::long_form() ? 5000 : 200;
+  constexpr int kTicks = 2000;
+  Random random(scenes);
+  int several = 0, touching = 0, inside_count = 0, off_count = 0;
+  double off_max = 0;
+  for (int i = 0; i < scenes; ++i) {
+    const std::array<Primitive, 2> shapes{random_round_shape(random), random_round_shape(random)};
+    std::vector<std::unique_ptr<ObjectTouch>> objects;
+    for (const Primitive& shape : shapes) {
+      objects.push_back(build_primitive_touch(shape, {.spring = {.stiffness = kStiffness}}));
+    }
+    SceneTouch scene(std::move(objects));
+    Vector3d p = 0.1 * random.direction(), target = random.in_box(0.01);
+    scene(at(p));
+    for (int tick = 0; tick < kTicks; ++tick) {
+      if (random.uniform(0, 1) < 0.004) target = random.in_box(0.025);
+      const Vector3d way = target - p;
+      p += std::min(1.0, random.uniform(0, 2e-4) / way.norm()) * way;
+      const Vector3d deep = p - scene.world()->proxy();
+      if (deep.norm() > 0.003) p -= (1 - 0.003 / deep.norm()) * deep;
+      scene(at(p));
+      const Vector3d q = scene.world()->proxy();
+      if (scene.world()->active_count() > 0) ++touching;
+      if (scene.world()->active_count() > 1) ++several;
+      bool inside = false;
+      std::vector<Vector3d> normals = normals_near(shapes[0], q, inside);
+      const auto others = normals_near(shapes[1], q, inside);
+      normals.insert(normals.end(), others.begin(), others.end());
+      if (inside) ++inside_count;
+      const double off = off_cone(normals, q - p);
+      if (off > 1e-9) ++off_count;
+      off_max = std::max(off_max, off);
+    }
+  }
+  std::printf("%d ticks in contact, %d with both; %d inside; %d off the cone, by %.1e m at most\n",
+              touching, several, inside_count, off_count, off_max);
+  EXPECT_GT(touching, scenes * 200);
+  EXPECT_GT(several, scenes * 5);
+  EXPECT_EQ(inside_count, 0);
+  EXPECT_LE(off_count, scenes * kTicks / 1000);
 }
 
 // Half-way through a sphere the proxy may have to travel around it in a tick.
