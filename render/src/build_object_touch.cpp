@@ -5,6 +5,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "ball/ball_contact.h"
+#include "ball/mesh_ball.h"
 #include "body/dent/bendable_polygon.h"
 #include "body/dent/dented_touch.h"
 #include "build_surface_touch.h"
@@ -24,6 +26,8 @@ namespace thimble::render {
 namespace {
 
 using Built = driver::Result<std::unique_ptr<ObjectTouch>>;
+
+constexpr double kTipRadiusMax = 1;  // m
 
 using Normals = std::shared_ptr<const SmoothNormals>;
 
@@ -88,6 +92,10 @@ Built mesh_touch(const StillSurface& still, const ContactChoice& choice,
 
 Built stiff_touch(const StillSurface& still, const ContactChoice& choice,
                   const SurfaceChoice& surface) {
+  if (choice.tip_radius > 0) {
+    return build_surface_touch(
+        BallContact(MeshBall(still.triangles, still.search, choice.tip_radius)), surface);
+  }
   return with_contact_of(choice.tracker, [&]<class Contact>(std::type_identity<Contact>) -> Built {
     if constexpr (std::is_same_v<Contact, GodObjectContact>) {
       return build_surface_touch(Contact(still.mesh, still.search), surface);
@@ -97,6 +105,19 @@ Built stiff_touch(const StillSurface& still, const ContactChoice& choice,
       return mesh_touch<Contact>(still, choice, surface);
     }
   });
+}
+
+/// Returns an error if a tip that is a ball cannot touch such a surface. Written so that NaN is
+/// refused.
+driver::Result<void> check_ball(const ContactChoice& choice, const SurfaceChoice& surface) {
+  if (choice.tip_radius == 0) return {};
+  if (!(choice.tip_radius > 0 && choice.tip_radius <= kTipRadiusMax)) {
+    return driver::Error{"The radius of the tip must be from 0 to 1 m."};
+  }
+  if (!surface.dent && !surface.shape.named()) return {};
+  return driver::Error{
+      "A tip with a radius cannot touch a surface that deforms (dent, plastic, clay, snap). Remove "
+      "the radius of the tip, or the body's deformation."};
 }
 
 /// Adds a dent to an object, if its surface has one.
@@ -135,6 +156,7 @@ Built parts_touch(std::vector<MeshPart> parts, const std::shared_ptr<const Conta
 
 Built build_object_touch(const StillSurface& still, const TriangleMesh& mesh_W,
                          const ContactChoice& choice, const SurfaceChoice& surface) {
+  if (auto fits = check_ball(choice, surface); !fits) return fits.error();
   if (!surface.dent) {
     auto parts = overlapping_parts(mesh_W);
     if (parts.size() > 1) return parts_touch(std::move(parts), still.mesh, choice, surface);
@@ -144,6 +166,7 @@ Built build_object_touch(const StillSurface& still, const TriangleMesh& mesh_W,
 
 Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
                          const SurfaceChoice& surface) {
+  if (auto fits = check_ball(choice, surface); !fits) return fits.error();
   if (surface.shape.named()) {
     if (auto fits = check_profile(choice); !fits) return fits.error();
     return dented(shaped_touch(mesh_W, choice, surface), mesh_W, surface);

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "ball/ball_solid.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/effect/stage_list.h"
 #include "thimble/render/object_touch.h"
@@ -33,7 +34,9 @@ inline StageList stage_list(const SurfaceChoice& surface) {
 template <class Law>
 std::unique_ptr<ObjectTouch> adapt_law(Law law) {
   auto adapter = std::make_unique<ObjectTouchAdapter<Law>>(std::move(law));
-  if constexpr (SolidLaw<Law>) {
+  if constexpr (BallLaw<Law>) {
+    adapter->set_solid(std::make_shared<BallSolid<Law>>(adapter->law()));
+  } else if constexpr (SolidLaw<Law>) {
     adapter->set_solid(std::make_shared<LawSolid<Law>>(adapter->law()));
   } else if constexpr (ShapeLaw<Law>) {
     adapter->set_solid(std::make_shared<ShapeSolid<Law>>(adapter->law()));

@@ -59,6 +59,18 @@ driver::Result<StillSurface> prepare_packed(const TriangleMesh& mesh_W,
   return still;
 }
 
+/// Prepares a mesh for a tip that is a ball.
+driver::Result<StillSurface> prepare_for_ball(const TriangleMesh& mesh_W,
+                                              const ContactChoice& choice) {
+  auto prepared = ContactMesh::build(mesh_W, {.edge_planes = false});
+  if (!prepared) return prepared.error();
+  StillSurface still;
+  still.mesh = std::make_shared<const ContactMesh>(std::move(prepared).value());
+  still.search = make_search(*still.mesh, choice.search);
+  still.triangles = std::make_shared<const TriangleTree>(still.mesh);
+  return still;
+}
+
 /// Returns whether corner normals are needed, for tracking or for shading.
 bool needs_normals(const ContactChoice& choice) {
   if (choice.tracker == TrackerChoice::kGodObject) return false;
@@ -91,6 +103,7 @@ driver::Result<void> check_profile(const ContactChoice& choice) {
 driver::Result<StillSurface> prepare_still_surface(const TriangleMesh& mesh_W,
                                                    const ContactChoice& choice) {
   if (auto fits = check_choice(choice); !fits) return fits.error();
+  if (choice.tip_radius > 0) return prepare_for_ball(mesh_W, choice);
   if (choice.tracker == TrackerChoice::kPacked) return prepare_packed(mesh_W, choice);
   // The god-object does not use edge planes.
   auto prepared =

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "ball/triangle_tree.h"
 #include "compact_mesh/packed_surface.h"
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
@@ -23,6 +24,8 @@ struct StillSurface {
   std::shared_ptr<const ContactSearch> search;  ///< Search over `packed` or `mesh`.
   /// Corner normals of `mesh`, if the choice needs them; else null.
   std::shared_ptr<const SmoothNormals> normals;
+  /// Tree over the triangles of `mesh` for a tip that is a ball; null for a point.
+  std::shared_ptr<const TriangleTree> triangles;
 };
 
 /// Fails if a choice names a profile of bands but no bands. Real-time: never from the servo thread.

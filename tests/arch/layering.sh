@@ -35,7 +35,7 @@ forbid render "thimble/(device_sim|app)/|$graphics|spdlog/|yaml-cpp/|CLI/" \
   "device_sim, app, graphics, logging or scene files"
 forbid render 'thimble/driver/(transport|device|arm|clock|servo_loop|real_time)\.h|(thimble/driver/)?arms/' \
   "the wire or the arm: a force law uses only state and force"
-forbid render/include '(mesh|compact_mesh|search|track|body|disk_paging|multirate|field|surface|effect)/|[a-z_]*\.h"' \
+forbid render/include '(ball|mesh|compact_mesh|search|track|body|disk_paging|multirate|field|surface|effect)/|[a-z_]*\.h"' \
   "a private header, which is not installed"
 
 # The layers of render: LAYER: the layers that it may include. Some headers do not belong to the layer of their folder:
@@ -56,6 +56,7 @@ layers='
   disk_paging: state mesh compact_mesh search track
   multirate: touch
   world: state settings touch mesh compact_mesh search track field
+  ball: state settings touch mesh search track field world
 '
 upward=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' render | awk -v layers="$layers" '
   function layer(path) {

@@ -34,6 +34,7 @@ constexpr double kStiffnessMax = 1e5;                 // N/m
 constexpr double kDampingMax = 1000;                  // N s/m
 constexpr double kSheetMin = 1e-5, kSheetMax = 0.02;  // m
 constexpr double kBandMax = 0.1;                      // m
+constexpr double kTipRadiusMax = 0.1;                 // m
 constexpr double kDurationMax = 86400;                // s
 constexpr double kRateMin = 10;                       // Hz
 constexpr double kRateMax = 1e5;                      // Hz
@@ -201,6 +202,35 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   return object;
 }
 
+/// Returns why a tip with a radius cannot touch an object, and the remedy; empty if it can.
+std::string_view not_by_ball(const SceneObject& object) {
+  if (object.paged) {
+    return "is a page file, which only a point can touch; use a mesh file, or remove radius";
+  }
+  if (object.body.dent || object.body.shape.named()) {
+    return "deforms (dent, plastic, snap), and only a point can touch it; remove the deformation, "
+           "or radius";
+  }
+  if (object.body.motion && object.body.motion->grip) {
+    return "can be held by the hand, and only a point can touch it; remove hold, or radius";
+  }
+  return {};
+}
+
+/// Reads the tip, and gives it to all objects.
+void read_tool(YamlMap tool, Scene& scene) {
+  scene.tip_radius = tool.optional_number("radius", 0, "m", 0, kTipRadiusMax);
+  if (scene.tip_radius > 0) {
+    for (SceneObject& object : scene.objects) {
+      if (object.build_field) continue;
+      const std::string_view why = not_by_ball(object);
+      if (!why.empty()) tool.reject("radius", fmt::format("{} {}", in_quotes(object.name), why));
+      object.contact.tip_radius = scene.tip_radius;
+    }
+  }
+  tool.finish();
+}
+
 /// Returns whether the stiffness of every surface is well within the stable range of the loop, with
 /// one arm.
 bool is_stable_at_rate(const Scene& scene, const ArmFile& file) {
@@ -287,6 +317,7 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
   for (YamlMap& object : root.require_maps("objects")) {
     scene.objects.push_back(read_object(object, folder, mesh_folder, context));
   }
+  if (root.has("tool")) read_tool(root.require_map("tool"), scene);
   std::unordered_set<std::string_view> names;
   for (const SceneObject& object : scene.objects) {
     if (names.insert(object.name).second) continue;

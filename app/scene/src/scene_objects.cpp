@@ -59,7 +59,9 @@ driver::Error refused(const SceneObject& object, const MeshPointer& mesh_W,
 /// surface move, it has its own mesh and search.
 Touched build_still(const SceneObject& object, const MeshPointer& mesh_W, SharedMeshes& meshes) {
   const render::SurfaceChoice surface = surface_of(object);
-  if (object.shape) return render::build_primitive_touch(object.shape->shape_W, surface);
+  if (object.shape) {
+    return render::build_primitive_touch(object.shape->shape_W, surface, object.contact.tip_radius);
+  }
   if (surface.shape.named()) return render::build_object_touch(*mesh_W, object.contact, surface);
   const auto still = meshes.surface(mesh_W, object.contact);
   if (!still) return still.error();
@@ -239,6 +241,10 @@ driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(
   }
   for (auto& objects_of_arm : touches) {
     objects->touches_.push_back(std::make_unique<render::SceneTouch>(std::move(objects_of_arm)));
+  }
+  if (scene.tip_radius > 0) {
+    objects->notes_.push_back(
+        fmt::format("The tip is a ball with a radius of {:g} mm.", 1e3 * scene.tip_radius));
   }
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (!scene.objects[i].shape) objects->triangles_ += objects->mesh_W(i).triangles.size();

@@ -83,6 +83,10 @@ class PrimitiveContact {
   /// Precondition: the last `update` touches. Real-time: safe.
   ClosestSurfacePoint closest(const Eigen::Vector3d& p_WT) const noexcept {
     ClosestSurfacePoint closest = flat_closest_point(state_);
+    if constexpr (requires { shape_.tip_radius; }) {
+      // The proxy is the centre of a ball.
+      closest.p_M -= shape_.tip_radius * state_.n_W;
+    }
     if constexpr (requires { shape_.derivative(p_WT, PrimitivePlace{}); }) {
       closest.J_MT = shape_.derivative(
           p_WT, {.depth = state_.depth, .n_W = state_.n_W, .face = state_.triangle});

@@ -142,7 +142,7 @@ class ShapeSolid final : public WorldSolid {
   }
   double stiffness() const noexcept override { return law_.spring_stiffness(); }
   /// A half-space has no box.
-  bool moves() const noexcept override { return std::is_same_v<Shape, HalfSpace>; }
+  bool moves() const noexcept override { return std::is_base_of_v<HalfSpace, Shape>; }
   bool inside(const Eigen::Vector3d& p_W) const noexcept override { return shape().inside(p_W); }
   SolidEntry first_entry(const Eigen::Vector3d& p_from,
                          const Eigen::Vector3d& p_to) noexcept override {

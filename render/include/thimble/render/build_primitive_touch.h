@@ -21,8 +21,10 @@ using Primitive =
     std::variant<HalfSpace, Sphere, WedgeBox, EntryFaceBox, Cylinder, Cone, Capsule, Torus>;
 
 /// Builds the force law of one shape (W, m) from only the stages that `surface` names. The caller
-/// provides unit normals and sizes above 0. Real-time: never from the servo thread.
+/// provides unit normals and sizes above 0. `tip_radius` (m) is that of a tip that is a ball; 0: a
+/// point. Under a ball, both kinds of box are the same. Real-time: never from the servo thread.
 THIMBLE_EXPORT std::unique_ptr<ObjectTouch> build_primitive_touch(const Primitive& shape_W,
-                                                                  const SurfaceChoice& surface);
+                                                                  const SurfaceChoice& surface,
+                                                                  double tip_radius = 0);
 
 }  // namespace thimble::render

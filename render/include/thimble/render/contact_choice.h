@@ -58,6 +58,9 @@ struct ContactChoice {
   /// Profile of the normal within a band; linear if empty. Used with `fixed_band` and `sized_band`
   /// only.
   std::optional<BlendProfile> profile = {};
+  /// Radius of a tip that is a ball, m; 0: a point. Under a ball, contact is exact: of the other
+  /// settings only `search` counts.
+  double tip_radius = 0;
 
   /// Returns whether two settings are equal.
   bool operator==(const ContactChoice&) const = default;

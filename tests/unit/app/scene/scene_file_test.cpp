@@ -219,6 +219,28 @@ TEST(SceneFile, RejectsARateBelowTheStallLimit) {
   }
 }
 
+TEST(SceneFile, GivesTheRadiusOfTheTipToAllSurfaces) {
+  const auto scene = scene_from(kBall + "  - {name: s, sphere: {radius: 0.02}, stiffness: 1}\n",
+                                kWait, "tool: {radius: 0.004}\n");
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  EXPECT_EQ(scene->tip_radius, 0.004);
+  EXPECT_EQ(scene->objects[0].contact.tip_radius, 0.004);
+  EXPECT_EQ(scene->objects[1].contact.tip_radius, 0.004);
+  const auto point = scene_from(kBall, kWait, "tool: {radius: 0}\n");
+  ASSERT_TRUE(point.ok()) << point.error().message;
+  EXPECT_EQ(point->objects[0].contact, render::ContactChoice());
+}
+
+TEST(SceneFile, RefusesATipWithARadiusWhereOnlyAPointCanTouch) {
+  const std::string mesh = "  - {name: b, mesh: cgal:ball.off, size: 0.1, stiffness: 500, ";
+  const std::string motion = "body: {motion: {mass: 0.1, hold: 300}}}\n";
+  EXPECT_TRUE(scene_from(mesh + motion, kWait).ok());
+  EXPECT_NE(mistake(mesh + motion, kWait, "tool: {radius: 0.004}\n").find("can be held"),
+            std::string::npos);
+  EXPECT_NE(mistake(kBall, kWait, "tool: {radius: 4}\n").find("radius"), std::string::npos);
+  EXPECT_NE(mistake(kBall, kWait, "tool: {radius: -0.001}\n").find("radius"), std::string::npos);
+}
+
 TEST(SceneFile, RefusesUnknownKeys) {
   EXPECT_NE(mistake(kBall, kWait, "rait: 1000\n").find("did you mean \"rate\"?"),
             std::string::npos);

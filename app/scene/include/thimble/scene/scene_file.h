@@ -118,6 +118,8 @@ struct Scene {
   int energy_line = 0;
   std::vector<SceneObject> objects;         ///< Objects that can be touched.
   FaultRule faults = FaultRule::kTogether;  ///< Effect of a fault with several arms.
+  /// Radius of a tip that is a ball, m; 0: a point.
+  double tip_radius = 0;
 };
 
 /// Options for reading a scene.
