@@ -54,6 +54,7 @@ DrawnScene drawn_scene_of(const session::SharedScene& scene) {
   drawn.arm = scene.arms.front().name;
   drawn.arm_in_scene = scene.arms.front().in_scene;
   drawn.force_limit = scene.force_max > 0 ? scene.force_max : 5;
+  drawn.tip_radius = scene.tip_radius;
   drawn.rate = 1e9 / static_cast<double>(scene.period_ns);
   for (const session::SharedScene::Object& object : scene.objects) {
     drawn.objects.push_back(drawn_object(scene, object));

@@ -46,6 +46,7 @@ struct DrawnScene {
   std::vector<DrawnObject> objects;
   std::vector<FieldSample> field;  ///< Force of all fields together, on a grid; empty: no field.
   double force_limit = 5;          ///< N
+  double tip_radius = 0;           ///< Radius of a tip that is a ball, m; 0: a point.
   double rate = 1000;              ///< Ticks per second, Hz.
 };
 

@@ -23,7 +23,8 @@ Point point(const std::array<double, 3>& p) {
 struct OneArm {
   const driver::TickRecord& tick;
   const std::vector<DrawnRod>& rods;
-  bool bent;  ///< The touched object is dented, so that the tip is on its surface.
+  bool bent;              ///< The touched object is dented, so that the tip is on its surface.
+  double tip_radius = 0;  ///< Of a tip that is a ball, m; 0: a point.
 };
 
 void add_arm(const OneArm& moment, TouchMarks& marks) {
@@ -65,9 +66,16 @@ void add_stylus(const OneArm& moment, TouchMarks& marks) {
       ball(tip + 3 * kPoint * along + kWidth * R_WT.col(2), kButton, kTipColour));
 }
 
-/// Returns the visible point of contact: the proxy on a stiff surface; on a dented one, the tip.
-Point touched_point(const OneArm& moment) {
+/// Returns where the tip is drawn: at the proxy on a stiff surface; on a dented one, where it is.
+Point drawn_tip(const OneArm& moment) {
   return point(moment.tick.in_contact && !moment.bent ? moment.tick.p_WP : moment.tick.p_WT);
+}
+
+/// Returns the visible point of contact: where the tip is drawn, or, of a ball, the point of it
+/// that touches.
+Point touched_point(const OneArm& moment) {
+  if (!moment.tick.in_contact || moment.bent) return drawn_tip(moment);
+  return drawn_tip(moment) - moment.tip_radius * point(moment.tick.n_W);
 }
 
 void add_force(const DrawnScene& scene, const OneArm& moment, double thick, TouchMarks& marks) {
@@ -110,14 +118,18 @@ void add_contact(const DrawnScene& scene, const OneArm& moment, double thick, To
 void add_tip(const OneArm& moment, double thick, TouchMarks& marks) {
   const Point p_WT = point(moment.tick.p_WT);
   if (!p_WT.allFinite()) return;
+  const Point centre = drawn_tip(moment);
+  if (moment.tip_radius > 0 && centre.allFinite()) {
+    marks.solids.push_back(ball(centre, moment.tip_radius, kJointColour));
+  }
   Solid tip = ball(p_WT, 1.8 * thick, kTipColour);
   tip.shines_through = true;
   marks.solids.push_back(tip);
   const Point p_WP = touched_point(moment);
   if (!moment.tick.in_contact || !p_WP.allFinite()) return;
   marks.solids.push_back(ball(p_WP, 1.7 * thick, kProxyColour));
-  if ((p_WP - p_WT).norm() < 1e-6) return;
-  Solid link = rod(p_WT, p_WP, 0.5 * thick, kTipColour);
+  if ((centre - p_WT).norm() < 1e-6) return;
+  Solid link = rod(p_WT, centre, 0.5 * thick, kTipColour);
   link.shines_through = true;
   marks.solids.push_back(link);
 }
@@ -207,8 +219,9 @@ TouchMarks mark_touch(const DrawnScene& scene, const DrawnMoment& moment, double
     }
   };
   const bool bent = moment.patch.triangle_count > 0 && moment.patch.object == moment.tick.object;
-  add({moment.tick, moment.arm, bent}, scene.arm_in_scene);
-  for (const DrawnArm& other : moment.others) add({other.tick, other.rods, false}, other.name);
+  add({moment.tick, moment.arm, bent, scene.tip_radius}, scene.arm_in_scene);
+  for (const DrawnArm& other : moment.others)
+    add({other.tick, other.rods, false, scene.tip_radius}, other.name);
   if (choice.edge_planes) add_edge_planes(scene, moment, marks);
   return marks;
 }

@@ -4,6 +4,7 @@
 
 #include "ball/ball_contact.h"
 #include "ball/box_ball.h"
+#include "ball/round_ball.h"
 #include "build_surface_touch.h"
 #include "field/ball_shapes.h"
 #include "field/entry_face_contact.h"
@@ -23,6 +24,12 @@ std::unique_ptr<ObjectTouch> touch_with_ball(const Primitive& shape_W, const Sur
           return build_surface_touch(PrimitiveContact(BallHalfSpace(shape, radius)), surface);
         } else if constexpr (std::is_same_v<Shape, Sphere>) {
           return build_surface_touch(PrimitiveContact(BallSphere(shape, radius)), surface);
+        } else if constexpr (std::is_same_v<Shape, Capsule>) {
+          return build_surface_touch(PrimitiveContact(BallCapsule(shape, radius)), surface);
+        } else if constexpr (std::is_same_v<Shape, Torus>) {
+          return build_surface_touch(PrimitiveContact(BallTorus(shape, radius)), surface);
+        } else if constexpr (std::is_same_v<Shape, Cylinder> || std::is_same_v<Shape, Cone>) {
+          return build_surface_touch(BallContact(RoundBall<Shape>(shape, radius)), surface);
         } else {
           return build_surface_touch(BallContact(BoxBall(shape, radius)), surface);
         }

@@ -59,8 +59,13 @@ std::string filled(std::string_view text, const std::map<std::string_view, std::
 }
 
 Json about(const PageTouch& touch, PageBlock& block) {
-  Json json{{"title", touch.title}, {"subtitle", touch.subtitle},    {"program", touch.program},
-            {"rate", touch.rate},   {"virtual", touch.virtual_time}, {"replayed", touch.replayed}};
+  Json json{{"title", touch.title},
+            {"subtitle", touch.subtitle},
+            {"program", touch.program},
+            {"rate", touch.rate},
+            {"tip_radius", touch.scene.tip_radius},
+            {"virtual", touch.virtual_time},
+            {"replayed", touch.replayed}};
   json["objects"] = page_objects(touch, block);
   json["bodies"] = page_bodies(touch, block);
   json["dents"] = page_dents(touch, block);

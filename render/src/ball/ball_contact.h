@@ -172,7 +172,7 @@ class BallContact {
       for (const BallFeature& feature : features) {
         if (feature.id != held_[i].id || feature.kind == BallFeature::Kind::kFace) continue;
         const double share = weight_[i] / (source_.radius() + feature.gap);
-        sum += share;
+        sum += share * feature.bend_max();
         H -= share * feature.bend();
       }
     }

@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "support/meshes/shapes.h"
 
@@ -79,6 +81,42 @@ TEST(TouchMarks, ShowNormalAndTangentialForce) {
   moment.tick.in_contact = true;
   moment.tick.n_W = {NAN, 0, 1};
   EXPECT_TRUE(mark_touch({}, moment, 1, choice).solids.empty());
+}
+
+/// Returns the position and the radius of each drawn ball.
+std::vector<std::pair<Vector3d, double>> balls_of(const TouchMarks& marks) {
+  std::vector<std::pair<Vector3d, double>> balls;
+  for (const Solid& solid : marks.solids) {
+    if (solid.kind != SolidKind::kBall) continue;
+    const Vector3d at = (solid.model * Eigen::Vector4f(0, 0, 0, 1)).head<3>().cast<double>();
+    balls.emplace_back(at, solid.model.col(0).head<3>().norm());
+  }
+  return balls;
+}
+
+TEST(TouchMarks, DrawsATipWithARadiusWhereItRests) {
+  DrawnScene scene;
+  scene.tip_radius = 0.004;
+  DrawnMoment moment;
+  moment.tick.p_WT = {0.01, 0.02, 0.03};
+  const MarkChoice only_tip{.arm = false, .tip = true, .force = false, .edge_planes = false};
+  const double thick = 0.0032;
+  auto balls = balls_of(mark_touch(scene, moment, 1, only_tip));
+  ASSERT_EQ(balls.size(), 2U);
+  EXPECT_NEAR(balls[0].second, 0.004, 1e-8);
+  EXPECT_LT((balls[0].first - Vector3d(0.01, 0.02, 0.03)).norm(), 1e-8);
+
+  moment.tick.in_contact = true;
+  moment.tick.n_W = {0, 0, 1};
+  moment.tick.p_WP = {0.01, 0.02, 0.032};
+  balls = balls_of(mark_touch(scene, moment, 1, only_tip));
+  ASSERT_EQ(balls.size(), 3U);
+  // Around the proxy; its amber mark is where the ball touches.
+  EXPECT_LT((balls[0].first - Vector3d(0.01, 0.02, 0.032)).norm(), 1e-8);
+  EXPECT_LT((balls[2].first - Vector3d(0.01, 0.02, 0.028)).norm(), 1e-8);
+  EXPECT_NEAR(balls[2].second, 1.7 * thick, 1e-8);
+  // A point has no such ball.
+  EXPECT_EQ(balls_of(mark_touch({}, moment, 1, only_tip)).size(), 2U);
 }
 
 }  // namespace

@@ -70,12 +70,19 @@ function makeStage(box) {
     const head = new THREE.Mesh(new THREE.ConeBufferGeometry(1, 1, 20), plain('#d55e00'));
     tip.scale.setScalar(size / 110);
     proxy.scale.setScalar(size / 130);
+    // A tip that is a ball, around the proxy.
+    const around = new THREE.Mesh(ball, plain('#4a525c'));
+    around.material.transparent = true;
+    around.material.opacity = 0.4;
+    around.material.depthWrite = false;
+    around.scale.setScalar(about.tip_radius || 1);
+    around.visible = false;
     const bars = [];
     for (const count of arm.lines || []) {
       for (let i = 0; i + 1 < count; ++i) bars.push(new THREE.Mesh(rod, plain('#8a94a0')));
     }
-    scene.add(path.group, tip, proxy, shaft, head, ...bars);
-    return {path, tip, proxy, shaft, head, bars};
+    scene.add(path.group, tip, proxy, around, shaft, head, ...bars);
+    return {path, tip, proxy, around, shaft, head, bars};
   });
 
   // Returns the sum of all forces: the initial view is from the touched side.
@@ -113,6 +120,8 @@ function makeStage(box) {
     side.tip.position.copy(tip);
     side.proxy.position.copy(proxy);
     side.proxy.visible = arm.touching[i] > 0;
+    side.around.visible = about.tip_radius > 0;
+    side.around.position.copy(side.proxy.visible ? proxy : tip);
     const force = point(arm.sent, i).multiplyScalar(0.3 * size / forceScale);
     const felt = force.length();
     const pointed = felt > 1e-6 * size;

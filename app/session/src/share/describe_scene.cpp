@@ -56,6 +56,7 @@ SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects&
   SharedScene described;
   described.name = scene.name;
   described.force_max = scene.arms.front().arm.limits.force_max;
+  described.tip_radius = scene.tip_radius;
   described.arms = {describe_arm(scene.arms.front().arm, device)};
   const render::TriangleMesh& mesh = objects.mesh_W();
   described.vertices = mesh.vertices;

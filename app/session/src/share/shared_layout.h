@@ -106,6 +106,7 @@ struct SharedHead {
   std::int64_t began_ns = 0;        ///< Time of creation, on the system's clock.
   std::int64_t period_ns = 0;       ///< Period of the loop, ns.
   double force_max = 0;             ///< Force limit of the gate, N.
+  double tip_radius = 0;            ///< Radius of a tip that is a ball, m; 0: a point.
   std::uint32_t wall_clock = 0;     ///< 1: in real time; 0: as fast as it computes.
   std::uint32_t hand_by_mouse = 0;  ///< 1: a viewer moves the simulated hand.
   std::uint32_t paced = 0;          ///< 1: simulated time, at a pace chosen by viewers.

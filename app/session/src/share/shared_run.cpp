@@ -132,6 +132,7 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   head_->began_ns = now.tv_sec * 1'000'000'000 + now.tv_nsec;
   head_->period_ns = period_ns_ = scene.period_ns;
   head_->force_max = scene.force_max;
+  head_->tip_radius = scene.tip_radius;
   head_->wall_clock = scene.wall_clock ? 1 : 0;
   head_->hand_by_mouse = scene.hand_by_mouse ? 1 : 0;
   head_->hold_by_key = scene.hold_by_key ? 1 : 0;

@@ -206,6 +206,9 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
   if (!(head.period_ns > 0) || !(head.force_max >= 0) || !std::isfinite(head.force_max)) {
     return broken("its period or force limit is invalid");
   }
+  if (!(head.tip_radius >= 0) || !std::isfinite(head.tip_radius)) {
+    return broken("the radius of the tip is invalid");
+  }
   if (head.arm_count < 1 || head.arm_count > kArmsMax)
     return broken("the number of arms is invalid");
   scene.arms.resize(head.arm_count);
@@ -241,6 +244,7 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
   scene.began_ns = head.began_ns;
   scene.period_ns = head.period_ns;
   scene.force_max = head.force_max;
+  scene.tip_radius = head.tip_radius;
   scene.wall_clock = head.wall_clock == 1;
   scene.hand_by_mouse = head.hand_by_mouse == 1;
   scene.hold_by_key = head.hold_by_key == 1;

@@ -63,6 +63,7 @@ struct SharedScene {
   std::int64_t began_ns = 0;   ///< Time of creation, on the system's clock.
   std::int64_t period_ns = 0;  ///< Period of the loop, ns; > 0.
   double force_max = 0;        ///< Force limit of the gate, N.
+  double tip_radius = 0;       ///< Radius of a tip that is a ball, m; 0: a point.
   bool wall_clock = false;
   bool hand_by_mouse = false;
   /// True if a key must be held to get forces (HoldToRun).

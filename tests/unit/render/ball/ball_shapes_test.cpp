@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -206,7 +207,169 @@ TEST(BallShapes, AThinPlateIsNotPassedAtTwoMetresPerSecond) {
   }
 }
 
-/// Shapes without a mesh, touched at the surface point below the ball.
+/// Moves a tip about a shape and a solid that is known to be its sum with the ball, and expects the
+/// same forces.
+template <class Shape>
+void expect_like(const Shape& shape, double R, const Primitive& sum, double size, int seed) {
+  const auto touch = build_primitive_touch(shape, surface(), R);
+  const auto whole = build_primitive_touch(sum, surface());
+  Random random(seed);
+  Vector3d p = shape.p_WO + Vector3d(0, 0, 4 * size), target = p;
+  int touching = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    if (i % 100 == 0) target = shape.p_WO + random.in_box(size);
+    p += 3e-4 * (target - p).normalized();
+    const driver::ForceCommand a = touch->update(at(p)), b = whole->update(at(p));
+    ASSERT_LT((a.f_T_W - b.f_T_W).norm(), 1e-9);
+    touching += a.touch.in_contact ? 1 : 0;
+  }
+  EXPECT_GT(touching, 3000);
+}
+
+Eigen::Matrix3d turned() {
+  return Eigen::AngleAxisd(0.8, Vector3d(1, -2, 1).normalized()).toRotationMatrix();
+}
+
+TEST(BallShapes, ACapsuleOrATorusUnderABallIsThicker) {
+  const double R = 0.003;
+  Capsule capsule;
+  capsule.R_WO = turned();
+  capsule.p_WO = {0.01, 0, -0.02};
+  capsule.radius = 0.008;
+  capsule.half_height = 0.015;
+  Capsule thick = capsule;
+  thick.radius += R;
+  expect_like(capsule, R, thick, 0.03, 703);
+  Torus torus;
+  torus.R_WO = turned();
+  torus.p_WO = {0.01, 0, -0.02};
+  torus.radius = 0.025;
+  torus.tube = 0.006;
+  Torus fat = torus;
+  fat.tube += R;
+  expect_like(torus, R, fat, 0.04, 704);
+}
+
+/// Where a ball rests on a solid of revolution, in closed form, and the way out from there.
+struct RestOnRound {
+  Vector3d q_O, n_O;
+};
+
+/// Puts a tip `depth` (m) below each of the places, and expects the ball to come to rest there.
+template <class Shape>
+void expect_rests(const Shape& shape, double R, double depth_max, Random& random,
+                  const std::function<RestOnRound()>& draw) {
+  const auto touch = build_primitive_touch(shape, surface(), R);
+  for (int k = 0; k < 3000; ++k) {
+    const RestOnRound rest = draw();
+    const double depth = random.uniform(0.01, 0.45) * depth_max;
+    const Vector3d n = shape.R_WO * rest.n_O, q = shape.p_WO + shape.R_WO * rest.q_O;
+    const Vector3d p = q - depth * n;
+    touch->update(at(Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())));
+    touch->update(at(q + 0.01 * n));
+    // Obliquely, so that the ball has to slide to its place.
+    touch->update(at(p + 0.2 * depth_max * random.direction()));
+    driver::ForceCommand last;
+    for (int tick = 0; tick < 6; ++tick) last = touch->update(at(p));
+    ASSERT_LT((last.f_T_W - kStiffness * depth * n).norm(), 1e-9 * kStiffness) << k;
+    ASSERT_LT((last.touch.p_WP - q).norm(), 1e-9) << k;
+  }
+}
+
+TEST(BallShapes, ACylinderIsRoundedAtItsRims) {
+  const double R = 0.003;
+  Cylinder cylinder;
+  cylinder.R_WO = turned();
+  cylinder.p_WO = {0.01, -0.005, 0.02};
+  cylinder.radius = 0.012;
+  cylinder.half_height = 0.02;
+  Random random(705);
+  int kind = 0;
+  expect_rests(cylinder, R, R, random, [&]() -> RestOnRound {
+    const double angle = random.uniform(0, 2 * std::numbers::pi), up = kind % 2 ? 1 : -1;
+    const Vector3d out(std::cos(angle), std::sin(angle), 0), axis(0, 0, up);
+    Vector3d c, n;
+    switch (++kind % 3) {
+      case 0:
+        c = random.uniform(0, 0.7) * 0.012 * out + 0.02 * axis;
+        n = axis;
+        break;
+      case 1:
+        c = 0.012 * out + random.uniform(0, 0.9) * 0.02 * axis;
+        n = out;
+        break;
+      default: {
+        const double turn = random.uniform(0.1, 1.4);
+        c = 0.012 * out + 0.02 * axis;
+        n = std::cos(turn) * out + std::sin(turn) * axis;
+      }
+    }
+    return {.q_O = c + R * n, .n_O = n};
+  });
+}
+
+TEST(BallShapes, AConeIsRoundedAtItsRimAndItsTip) {
+  const double R = 0.003;
+  Cone cone;
+  cone.R_WO = turned();
+  cone.p_WO = {0.01, -0.005, 0.02};
+  cone.radius = 0.015;
+  cone.half_height = 0.02;
+  Random random(706);
+  int kind = 0;
+  const double steep = std::atan2(cone.sine(), cone.cosine());
+  expect_rests(cone, R, R, random, [&]() -> RestOnRound {
+    const double angle = random.uniform(0, 2 * std::numbers::pi);
+    const Vector3d out(std::cos(angle), std::sin(angle), 0), axis(0, 0, 1);
+    Vector3d c, n;
+    const auto turned_by = [&](double turn) {
+      return Vector3d(std::cos(turn) * out + std::sin(turn) * axis);
+    };
+    switch (++kind % 4) {
+      case 0:  // base
+        c = random.uniform(0, 0.7) * 0.015 * out - 0.02 * axis;
+        n = -axis;
+        break;
+      case 1: {  // side
+        const double share = random.uniform(0.15, 0.85);
+        c = (1 - share) * 0.015 * out + (2 * share - 1) * 0.02 * axis;
+        n = turned_by(steep);
+        break;
+      }
+      case 2:  // rim
+        c = 0.015 * out - 0.02 * axis;
+        n = turned_by(random.uniform(-1.4, steep - 0.15));
+        break;
+      default:  // tip
+        c = 0.02 * axis;
+        n = turned_by(random.uniform(steep + 0.15, std::numbers::pi / 2));
+    }
+    return {.q_O = c + R * n, .n_O = n};
+  });
+}
+
+TEST(BallShapes, AHoleOfATorusThatIsTooNarrowCarriesTheBallOnItsAxis) {
+  Torus torus;
+  torus.radius = 0.02;
+  torus.tube = 0.01;
+  const double R = 0.012, height = std::sqrt(0.022 * 0.022 - 0.02 * 0.02);
+  for (const double side : {1.0, -1.0}) {
+    const auto touch = build_primitive_touch(torus, surface(), R);
+    touch->update(at({0, 0, 0.05 * side}));
+    driver::ForceCommand last;
+    Vector3d before = Vector3d::Zero();
+    for (int i = 0; i <= 3000; ++i) {
+      const double s = 1e-3 * i;
+      const Vector3d p(0.003 * std::sin(9 * s), 0.003 * std::sin(7 * s),
+                       side * std::max(-0.001, 0.02 - 0.02 * s));
+      last = touch->update(at(p));
+      ASSERT_LT((last.f_T_W - before).norm(), 5 * kStiffness * 1e-4) << i;
+      before = last.f_T_W;
+    }
+    EXPECT_LT((last.touch.p_WP - Vector3d(0, 0, side * height)).norm(), 1e-9);
+  }
+}
+
 TEST(BallShapes, ATickAllocatesNothingAndNanEndsTheContact) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::unique_ptr<ObjectTouch>> touches;
@@ -215,6 +378,9 @@ TEST(BallShapes, ATickAllocatesNothingAndNanEndsTheContact) {
   EntryFaceBox box;
   box.half_sides = {0.02, 0.02, 0.02};
   touches.push_back(build_primitive_touch(box, surface(), 0.004));
+  Cylinder cylinder;
+  cylinder.radius = cylinder.half_height = 0.02;
+  touches.push_back(build_primitive_touch(cylinder, surface(), 0.004));
   for (const auto& touch : touches) {
     driver::ForceCommand last;
     EXPECT_EQ(support::heap_calls_of([&] {

@@ -13,9 +13,9 @@ THIMBLE_LAYOUT(thimble::session::SharedTable, offset, count)
 THIMBLE_LAYOUT(thimble::session::SharedArm, name, device, in_scene, shape, unused, numbers, R_WB,
                p_WB, min_W, max_W)
 THIMBLE_LAYOUT(thimble::session::SharedHead, ready, layout, total_bytes, hash, pid, began_ns,
-               period_ns, force_max, wall_clock, hand_by_mouse, paced, restarts, hold_by_key,
-               unused, scene, scene_file, arm_count, arms, objects, knobs, vertices, triangles,
-               field, shaped, splits, ring)
+               period_ns, force_max, tip_radius, wall_clock, hand_by_mouse, paced, restarts,
+               hold_by_key, unused, scene, scene_file, arm_count, arms, objects, knobs, vertices,
+               triangles, field, shaped, splits, ring)
 THIMBLE_LAYOUT(thimble::session::SharedObject, name, kind, colour, moves, dents, shaped, unused,
                first_vertex, vertex_count, first_triangle, triangle_count, first_shaped,
                first_split, max_splits, crease_angle, texture, friction)
