@@ -36,6 +36,7 @@ Json to_json(const session::RunFigures& report) {
   json["scene"] = report.scene;
   json["object"] = report.object;
   json["triangles"] = report.triangles;
+  json["tip_radius_m"] = report.tip_radius;
   json["arm"] = {{"name", report.arm}, {"simulated", report.simulated_arm}};
   if (!report.simulated_arm) json["arm"]["feel_check"] = scene::name(report.feel_check);
   json["build"] = {{"version", build.version},

@@ -1,12 +1,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <filesystem>
+#include <fstream>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "figures/lost_contacts.h"
+#include "support/scratch.h"
 #include "thimble/render/scene_touch.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
@@ -82,6 +86,48 @@ TEST(SeveralObjects, OverlappingPartsOfAMeshAreFeltAsTheirUnion) {
   ASSERT_FALSE(ticks.empty());
   // The side of the post is at x = 0; it overlaps the plate that the tip presses.
   EXPECT_LT(ticks.back().f_wanted_W[0], -1);
+}
+
+TEST(BallTip, RestsInAGrooveOfTwoBoxesAtTheHeightOfItsRadius) {
+  const auto ticks = ticks_of("ball_in_groove");
+  ASSERT_FALSE(ticks.empty());
+  int on_both = 0;
+  for (const auto& row : ticks) {
+    if (!row.in_contact) continue;
+    // Both walls at 45 degrees: the centre is above the planes at the distance of the radius.
+    const double left = (row.p_WP[0] + row.p_WP[2]) / std::numbers::sqrt2;
+    const double right = (row.p_WP[2] - row.p_WP[0]) / std::numbers::sqrt2;
+    ASSERT_GT(std::min(left, right), 0.004 - 1e-9) << "tick " << row.tick;
+    if (std::max(left, right) < 0.004 + 1e-9) ++on_both;
+  }
+  EXPECT_GT(on_both, 500);
+  EXPECT_NEAR(ticks.back().p_WP[2], 0.004 * std::numbers::sqrt2, 1e-9);
+  EXPECT_GT(ticks.back().f_wanted_W[2], 1);
+}
+
+/// Runs a scene in a file and returns the positions and forces of its ticks.
+std::vector<std::array<double, 6>> motion_of(const std::filesystem::path& file) {
+  const auto opened = session::Session::open(file, {});
+  EXPECT_TRUE(opened) << opened.error().message;
+  std::vector<std::array<double, 6>> motion;
+  if (!opened) return motion;
+  EXPECT_EQ((*opened)->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
+  for (const auto& row : (*opened)->ticks()) {
+    motion.push_back(
+        {row.p_WT[0], row.p_WT[1], row.p_WT[2], row.f_sent_W[0], row.f_sent_W[1], row.f_sent_W[2]});
+  }
+  return motion;
+}
+
+TEST(BallTip, OfRadiusZeroIsAPoint) {
+  const auto scene =
+      std::filesystem::path(THIMBLE_SOURCE_DIR) / "tests/data/scenes/flush_boxes.yaml";
+  const auto with_key = support::scratch_folder() / "scene.yaml";
+  std::filesystem::copy_file(scene, with_key, std::filesystem::copy_options::overwrite_existing);
+  std::ofstream(with_key, std::ios::app) << "tool: {radius: 0}\n";
+  const auto motion = motion_of(scene);
+  EXPECT_GT(motion.size(), 1000u);
+  EXPECT_EQ(motion_of(with_key), motion);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "figures/lost_contacts.h"
 #include "report/report.h"
@@ -13,6 +14,7 @@
 #include "studies/ring_pages.h"
 #include "support/scratch.h"
 #include "thimble/render/scene_touch.h"
+#include "thimble/scene/scene_file.h"
 #include "thimble/session/session.h"
 
 namespace thimble {
@@ -71,6 +73,40 @@ TEST(PagedScene, RunsFromDiskAreBitIdentical) {
     ASSERT_EQ(forces.size(), rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_EQ(forces[i], rows[i].f_sent_W);
   }
+}
+
+TEST(PagedScene, BudgetLimitsThePagesInMemory) {
+  // Around half of the ring.
+  const std::string round =
+      "    - {t: 2.1, at: [0, 0.0317, 0.009]}\n    - {t: 2.4, at: [-0.0317, 0, 0.009]}\n";
+  std::vector<std::array<double, 3>> forces;
+  for (const char* budget : {"", "    budget: 1\n"}) {
+    const auto opened = session::Session::open(scene(budget, round), {});
+    ASSERT_TRUE(opened) << opened.error().message;
+    session::Session& session = **opened;
+    ASSERT_EQ(session.run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
+    const auto paging = *session.setup().objects().paging();
+    EXPECT_EQ(paging.evictions > 0, *budget != 0) << budget;
+    EXPECT_EQ(paging.misses, 0u);
+    std::vector<std::array<double, 3>> now;
+    for (const auto& row : session.ticks()) now.push_back(row.f_sent_W);
+    if (*budget != 0) {
+      EXPECT_EQ(now, forces);
+    }
+    forces = now;
+  }
+}
+
+TEST(PagedScene, RefusesABudgetThatIsInvalidOrForAMeshInMemory) {
+  EXPECT_NE(refusal("    budget: 0\n", "").find("budget: expected a whole number from 1 to "),
+            std::string::npos);
+  const auto file = support::scratch_folder() / "ball.yaml";
+  std::ofstream(file) << "name: ball\narm: vintage_phantom\nduration: 1\nobjects:\n"
+                         "  - {name: b, mesh: cgal:ball.off, stiffness: 100, budget: 4}\n"
+                         "hand: {path: [{t: 0, at: [0, 0, 0]}]}\n";
+  const auto read = scene::load_scene(file);
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().message.find("budget: applies to page files only"), std::string::npos);
 }
 
 TEST(PagedScene, RefusesFeaturesThatNeedTheWholeMesh) {

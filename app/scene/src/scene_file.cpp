@@ -33,6 +33,8 @@ constexpr double kPositionMax = 2;                    // m
 constexpr double kStiffnessMax = 1e5;                 // N/m
 constexpr double kDampingMax = 1000;                  // N s/m
 constexpr double kSheetMin = 1e-5, kSheetMax = 0.02;  // m
+constexpr std::int64_t kBudgetMin = 1;                // MiB: 16 pages, around a tip at rest
+constexpr std::int64_t kBudgetMax = 1 << 20;          // MiB
 constexpr double kBandMax = 0.1;                      // m
 constexpr double kTipRadiusMax = 0.1;                 // m
 constexpr double kDurationMax = 86400;                // s
@@ -97,6 +99,19 @@ void read_mesh(YamlMap& map, const std::filesystem::path& folder,
   }
 }
 
+/// Reads the memory for the pages of a page file.
+void read_budget(YamlMap& map, SceneObject& object) {
+  if (!map.has("budget")) return;
+  object.page_budget =
+      static_cast<std::size_t>(map.require_whole("budget", "MiB", kBudgetMin, kBudgetMax));
+  if (!object.paged) {
+    map.reject(
+        "budget",
+        "applies to page files only, which stay mostly on disk; remove it, or write the mesh "
+        "into a page file (thimble mesh page)");
+  }
+}
+
 /// Checks the keys that sheets exclude, and selects the tracker for sheets.
 void read_sheets(YamlMap& map, SceneObject& object) {
   if ((object.repair || object.sheet_thickness) && object.paged) {
@@ -119,11 +134,11 @@ void read_sheets(YamlMap& map, SceneObject& object) {
 
 /// Explains the keys of surfaces and meshes that an object without them does not use.
 void explain_unused_keys(YamlMap& map) {
-  for (const char* key : {"size", "scale", "repair", "open", "contact"}) {
+  for (const char* key : {"size", "scale", "repair", "open", "budget", "contact"}) {
     map.explain_unused(key, "needs mesh");
   }
   for (const char* key : {"stiffness", "damping", "effects", "body"}) {
-    map.explain_unused(key, "needs a surface: mesh, plane, sphere or box");
+    map.explain_unused(key, "needs a surface: a mesh or a shape");
   }
 }
 
@@ -175,6 +190,7 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
     }
     object.contact.tracker = render::TrackerChoice::kPacked;
   }
+  if (!object.shape) read_budget(map, object);
   if (!object.shape) read_sheets(map, object);
   context.surface_stiffness = object.stiffness;
   context.surface_damping = object.damping;
@@ -229,6 +245,16 @@ void read_tool(YamlMap tool, Scene& scene) {
     }
   }
   tool.finish();
+}
+
+/// Lets the hands follow the surface at the depth that the scene names: the tip is the centre of a
+/// ball.
+void lift_hands(Scene& scene) {
+  for (SceneArm& one : scene.arms) {
+    for (HandWaypoint& waypoint : one.hand) {
+      if (waypoint.on) waypoint.press -= scene.tip_radius;
+    }
+  }
 }
 
 /// Returns whether the stiffness of every surface is well within the stable range of the loop, with
@@ -329,6 +355,7 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
     scene.arms.front().hand = read_hand(root.require_map("hand"), scene.objects, folder,
                                         scene.arms.front().arm.simulated.hand);
   }
+  lift_hands(scene);
   root.finish();
   if (auto done = yaml.finish(); !done) return done.error();
   if (arm_error) return *arm_error;

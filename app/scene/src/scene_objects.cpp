@@ -73,7 +73,12 @@ Touched build_one(const SceneObject& object, const MeshPointer& mesh_W, SharedMe
                   double reach, std::vector<std::shared_ptr<render::PagedSurface>>& pages) {
   if (object.build_field) return object.build_field();
   if (object.paged) {
-    auto opened = render::PagedSurface::open(object.mesh_file);
+    render::PagingSettings paging;
+    if (object.page_budget) {
+      constexpr std::size_t kMiB = std::size_t{1} << 20;
+      paging.frames = *object.page_budget * kMiB / render::kPageBytes;
+    }
+    auto opened = render::PagedSurface::open(object.mesh_file, paging);
     if (!opened) return opened.error();
     pages.emplace_back(std::move(opened).value());
     const render::PagedPlace place = place_pages(pages.back()->file(), object);

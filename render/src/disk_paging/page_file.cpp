@@ -335,8 +335,8 @@ std::int32_t PageFile::read_page(std::int32_t page,
 }
 
 void PageFile::announce_page(std::int32_t page) const noexcept {
-  constexpr off_t kPageBytes = kPageTriangles * sizeof(PackedTriangle);
-  posix_fadvise(descriptor_, records_at_ + page * kPageBytes, kPageBytes, POSIX_FADV_WILLNEED);
+  constexpr auto kBytes = static_cast<off_t>(kPageBytes);
+  posix_fadvise(descriptor_, records_at_ + page * kBytes, kBytes, POSIX_FADV_WILLNEED);
 }
 
 }  // namespace thimble::render

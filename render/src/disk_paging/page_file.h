@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -27,6 +28,8 @@ namespace thimble::render {
 
 /// Number of packed triangles per page: 64 KiB, a size that disks read at full speed.
 inline constexpr std::int32_t kPageTriangles = 1024;
+/// Bytes of a page.
+inline constexpr std::size_t kPageBytes = kPageTriangles * sizeof(PackedTriangle);
 
 /// The box of a page's triangles, in steps of the lattice, rounded outwards.
 struct PageBox {

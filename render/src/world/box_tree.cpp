@@ -11,13 +11,6 @@ namespace thimble::render {
 
 using Eigen::Vector3d;
 
-namespace {
-
-// Halves of 2^31 boxes end after 31 levels; each leaves one node waiting.
-constexpr std::size_t kWaitingMax = 64;
-
-}  // namespace
-
 BoxTree::BoxTree(std::vector<SolidBox> boxes, std::vector<std::int32_t> solids)
     : boxes_(std::move(boxes)) {
   if (solids.empty()) return;

@@ -57,6 +57,14 @@ class THIMBLE_EXPORT ContactWorld {
   /// Prefetches the memory for the contact of a tick with about this state. Real-time: safe.
   void prepare(const driver::DeviceState& expected) const noexcept;
 
+  /// Returns whether `holds(member)` is true for a solid that may contain a point (W, m): one that
+  /// moves, or whose box contains it. `member` is its number in the list of the constructor.
+  /// Real-time: safe if `holds` is.
+  template <class Holds>
+  bool any_at(const Eigen::Vector3d& p_W, const Holds& holds) const noexcept {
+    return tree_.any_at(p_W, holds) || std::any_of(moving_.begin(), moving_.end(), holds);
+  }
+
   /// Returns the proxy, above the surface by the lift; the tip while it is free. Real-time: safe.
   const Eigen::Vector3d& proxy() const noexcept { return p_WQ_; }
   /// Returns the number of solids that hold the proxy. Real-time: safe.

@@ -1,6 +1,10 @@
 // Functions of SceneTouch that know of the world of its solids.
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "thimble/render/scene_touch.h"
 #include "world/contact_world.h"
@@ -10,7 +14,9 @@ namespace thimble::render {
 /// All solids of a scene as one object.
 class SceneTouch::WorldTouch final : public ObjectTouch {
  public:
-  explicit WorldTouch(std::vector<ContactWorld::Member> members) : world_(std::move(members)) {}
+  /// `object_of` has the index of each member's object in the scene.
+  WorldTouch(std::vector<ContactWorld::Member> members, std::vector<std::size_t> object_of)
+      : object_of_(std::move(object_of)), world_(std::move(members)) {}
 
   driver::ForceCommand update(const driver::DeviceState& state) noexcept override {
     return world_(state);
@@ -22,22 +28,34 @@ class SceneTouch::WorldTouch final : public ObjectTouch {
   bool inside(const Eigen::Vector3d&) const noexcept override { return false; }
 
   const ContactWorld& world() const noexcept { return world_; }
+  /// Returns whether `holds(object)` is true for an object that may contain a point (W, m).
+  template <class Holds>
+  bool any_at(const Eigen::Vector3d& p_W, const Holds& holds) const noexcept {
+    return world_.any_at(p_W, [&](std::int32_t member) {
+      return holds(object_of_[static_cast<std::size_t>(member)]);
+    });
+  }
 
  private:
+  std::vector<std::size_t> object_of_;
   ContactWorld world_;
 };
 
 SceneTouch::SceneTouch(std::vector<std::unique_ptr<ObjectTouch>> objects)
     : objects_(std::move(objects)) {
   std::vector<ContactWorld::Member> members;
+  std::vector<std::size_t> object_of;
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const auto solids = objects_[i]->solids();
     const std::int16_t object = object_number(i);
-    for (WorldSolid* solid : solids) members.push_back({.solid = solid, .object = object});
+    for (WorldSolid* solid : solids) {
+      members.push_back({.solid = solid, .object = object});
+      object_of.push_back(i);
+    }
     if (solids.empty()) felt_.push_back({.touch = objects_[i].get(), .object = object});
   }
   if (members.size() > 1) {
-    world_ = std::make_unique<WorldTouch>(std::move(members));
+    world_ = std::make_unique<WorldTouch>(std::move(members), std::move(object_of));
     felt_.insert(felt_.begin(), {.touch = world_.get(), .object = 0});
     return;
   }
@@ -50,6 +68,18 @@ SceneTouch::SceneTouch(std::vector<std::unique_ptr<ObjectTouch>> objects)
 SceneTouch::SceneTouch(SceneTouch&&) noexcept = default;
 SceneTouch& SceneTouch::operator=(SceneTouch&&) noexcept = default;
 SceneTouch::~SceneTouch() = default;
+
+bool SceneTouch::inside(const Eigen::Vector3d& p_W) const noexcept {
+  const auto holds = [&](const ObjectTouch& object) {
+    return object.is_static() && object.inside(p_W);
+  };
+  if (world_ && world_->any_at(p_W, [&](std::size_t i) { return holds(*objects_[i]); })) {
+    return true;
+  }
+  return std::any_of(felt_.begin(), felt_.end(), [&](const Felt& felt) {
+    return felt.touch != world_.get() && holds(*felt.touch);
+  });
+}
 
 const ContactWorld* SceneTouch::world() const noexcept {
   return world_ ? &world_->world() : nullptr;

@@ -39,6 +39,7 @@ const std::vector<KeyRelation>& relations() {
       {"objects[]", Relation::kSecondToo, {"scale", "mesh"}},
       {"objects[]", Relation::kSecondToo, {"repair", "mesh"}},
       {"objects[]", Relation::kSecondToo, {"open", "mesh"}},
+      {"objects[]", Relation::kSecondToo, {"budget", "mesh"}},
       {"objects[]", Relation::kSecondToo, {"contact", "mesh"}},
       {"objects[].body.motion", Relation::kSecondToo, {"floor_friction", "floor"}},
       {"objects[].body.motion", Relation::kSecondToo, {"hold_damping", "hold"}},

@@ -198,8 +198,9 @@ std::vector<const Candidate*> best_within(const std::vector<Knob>& knobs, double
 }  // namespace
 
 bool leaves_surface_open(const SceneObject& object) {
-  return !object.paged && !object.shape && !object.build_field && !object.body.dent &&
-         !object.contact.blending && !object.contact.curved_depth && !object.contact.normals &&
+  return !(object.contact.tip_radius > 0) && !object.paged && !object.shape &&
+         !object.build_field && !object.body.dent && !object.contact.blending &&
+         !object.contact.curved_depth && !object.contact.normals &&
          !(object.tracker_named && (object.contact.tracker == TrackerChoice::kNormalProjection ||
                                     object.contact.tracker == TrackerChoice::kGodObject));
 }

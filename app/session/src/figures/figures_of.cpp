@@ -34,6 +34,7 @@ RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& rec
   figures.requested_rate = setup.scene().rate;
   figures.force_limit = setup.arm_file(arm).limits.force_max;
   figures.inside_at_start = setup.inside_at_start(arm);
+  figures.tip_radius = setup.scene().tip_radius;
   figures.triangles = setup.objects().triangles();
   figures.paging = setup.objects().paging();
   figures.wire = device.wire_counters();

@@ -60,13 +60,8 @@ class THIMBLE_EXPORT SceneTouch {
 
   /// Returns whether a point (W, m) is inside an object that has neither moved nor deformed. For
   /// checks outside of the servo loop. Real-time: safe unless an object is paged from disk; the
-  /// time grows with the size of the objects.
-  bool inside(const Eigen::Vector3d& p_W) const noexcept {
-    for (const auto& object : objects_) {
-      if (object->is_static() && object->inside(p_W)) return true;
-    }
-    return false;
-  }
+  /// time grows with the size of the objects at this point.
+  bool inside(const Eigen::Vector3d& p_W) const noexcept;
 
   /// Writes the dent of the first dented object to `patch` for drawing. Returns false and leaves
   /// `patch` unchanged if no object can dent. Real-time: safe; intended to be called once per

@@ -231,6 +231,15 @@ TEST(SceneFile, GivesTheRadiusOfTheTipToAllSurfaces) {
   EXPECT_EQ(point->objects[0].contact, render::ContactChoice());
 }
 
+TEST(SceneFile, LiftsAHandOnASurfaceByTheRadiusOfTheTip) {
+  const auto scene =
+      scene_from(kBall, kWait + "    - {t: 1, on: ball, near: [0, 0, 0.05], press: 0.001}\n",
+                 "tool: {radius: 0.004}\n");
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  EXPECT_EQ(scene->arms.front().hand[0].press, 0);
+  EXPECT_DOUBLE_EQ(scene->arms.front().hand[1].press, 0.001 - 0.004);
+}
+
 TEST(SceneFile, RefusesATipWithARadiusWhereOnlyAPointCanTouch) {
   const std::string mesh = "  - {name: b, mesh: cgal:ball.off, size: 0.1, stiffness: 500, ";
   const std::string motion = "body: {motion: {mass: 0.1, hold: 300}}}\n";

@@ -49,7 +49,9 @@ std::vector<Variant> scene_variants() {
   const auto add_object = [&](const std::string& place, const std::string& keys) {
     variants.emplace_back(place, scene_text("  - {name: o, " + keys + "}\n", kPath));
   };
-  for (const char* form : {"plane: {}", "sphere: {radius: 0.1}", "box: {sides: [1, 1, 1]}"}) {
+  for (const char* form :
+       {"plane: {}", "sphere: {radius: 0.1}", "box: {sides: [1, 1, 1]}",
+        "cylinder: {radius: 0.1, height: 0.1}", "torus: {radius: 0.1, tube: 0.01}"}) {
     add_object("objects[]", std::string(form) + ", stiffness: 1, @: x");
   }
   add_object("objects[]", "stiffness: 1, @: x");
@@ -138,8 +140,10 @@ TEST(UnusedKeys, SayWhatTheyRequire) {
   };
   EXPECT_EQ(of_object("sphere: {radius: 0.1}, stiffness: 1, repair: true"),
             "scene.yaml:5: repair: needs mesh.");
+  EXPECT_EQ(of_object("sphere: {radius: 0.1}, stiffness: 1, budget: 16"),
+            "scene.yaml:5: budget: needs mesh.");
   EXPECT_EQ(of_object("field: gravity, mass: 1, stiffness: 1"),
-            "scene.yaml:5: stiffness: needs a surface: mesh, plane, sphere or box.");
+            "scene.yaml:5: stiffness: needs a surface: a mesh or a shape.");
   EXPECT_EQ(of_object("plane: {}, stiffness: 1, body: {motion: {mass: 1, hold_damping: 1}}"),
             "scene.yaml:5: hold_damping: needs hold, the stiffness of the grip in N/m.");
   EXPECT_EQ(mistakes_of_scene(scene_text(kPlane, kPath) + "faults: apart\n"),

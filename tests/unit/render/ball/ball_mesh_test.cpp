@@ -22,7 +22,7 @@
 #include "support/long_form.h"
 #include "support/meshes/shapes.h"
 #include "support/random.h"
-#include "thimble/driver/device_state.h"
+#include "support/tip_at.h"
 #include "thimble/render/build_object_touch.h"
 
 namespace thimble::render {
@@ -30,12 +30,7 @@ namespace {
 
 using Eigen::Vector3d;
 using support::Random;
-
-driver::DeviceState at(const Vector3d& p) {
-  driver::DeviceState state;
-  state.p_WT = p;
-  return state;
-}
+using support::tip_at;
 
 BallContact<MeshBall> ball_on(const TriangleMesh& mesh, double radius) {
   auto built = std::make_shared<const ContactMesh>(ContactMesh::build(mesh).value());
@@ -110,7 +105,7 @@ Found wander(const TriangleMesh& mesh, double radius, double size, double depth_
     p += random.uniform(0, 4e-4) * (target - p).normalized();
     const Vector3d deep = p - ball.state().p_WP;
     if (ball.state().touching && deep.norm() > depth_max) p -= (1 - depth_max / deep.norm()) * deep;
-    const ContactState state = ball.update(at(p));
+    const ContactState state = ball.update(tip_at(p));
     ++found.ticks;
     if (!state.touching) continue;
     ++found.touching;
@@ -175,12 +170,12 @@ TEST(BallMesh, ASphereOfTrianglesKeepsItsExactDistance) {
   const TriangleMesh mesh = support::icosphere(4, r);
   BallContact<MeshBall> ball = ball_on(mesh, R);
   Random random(711);
-  ball.update(at({0, 0, 0.05}));
+  ball.update(tip_at({0, 0, 0.05}));
   double off = 0, least = 1;
   for (int i = 0; i < 3000; ++i) {
     const double s = 2e-3 * i;
     const Vector3d towards(std::sin(s), std::cos(s) * std::sin(0.3 * s), std::cos(s));
-    const ContactState state = ball.update(at((r + R - 0.0015) * towards.normalized()));
+    const ContactState state = ball.update(tip_at((r + R - 0.0015) * towards.normalized()));
     if (i == 0) continue;
     ASSERT_TRUE(state.touching);
     off = std::max(off, std::abs(near_by_all(mesh, state.p_WP).distance - R));
@@ -222,13 +217,13 @@ TEST(BallMesh, APathMeetsTheMeshWhereItsDistanceIsTheRadius) {
 
 double tick_time(ObjectTouch& touch, double r, int ticks) {
   double least = 1e9;
-  touch.update(at({0, 0, 1}));
+  touch.update(tip_at({0, 0, 1}));
   for (int round = 0; round < 4; ++round) {
     const std::clock_t begin = std::clock();
     for (int i = 0; i < ticks; ++i) {
       const double s = 5e-3 * i;
-      touch.update(at({r * std::sin(s), r * std::cos(s) * std::sin(0.01 * s),
-                       r * std::cos(s) * std::cos(0.01 * s)}));
+      touch.update(tip_at({r * std::sin(s), r * std::cos(s) * std::sin(0.01 * s),
+                           r * std::cos(s) * std::cos(0.01 * s)}));
     }
     least = std::min(least, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / ticks);
   }

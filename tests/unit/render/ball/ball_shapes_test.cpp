@@ -19,7 +19,7 @@
 #include "support/heap_guard.h"
 #include "support/meshes/concave_solids.h"
 #include "support/random.h"
-#include "thimble/driver/device_state.h"
+#include "support/tip_at.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/build_primitive_touch.h"
 #include "thimble/render/scene_touch.h"
@@ -31,16 +31,11 @@ namespace {
 using Eigen::Vector3d;
 using support::Random;
 using support::SolidBlock;
+using support::tip_at;
 
 constexpr double kStiffness = 800;
 SurfaceChoice surface() {
   return {.spring = {.stiffness = kStiffness}};
-}
-
-driver::DeviceState at(const Vector3d& p) {
-  driver::DeviceState state;
-  state.p_WT = p;
-  return state;
 }
 
 std::unique_ptr<ObjectTouch> mesh_touch(const TriangleMesh& mesh, double radius) {
@@ -77,7 +72,7 @@ TEST(BallShapes, ABallUnderABallIsALargerBall) {
   for (int i = 0; i < 20'000; ++i) {
     if (i % 100 == 0) target = sphere.p_WO + random.in_box(0.03);
     p += 3e-4 * (target - p).normalized();
-    const driver::ForceCommand a = touch->update(at(p)), b = larger->update(at(p));
+    const driver::ForceCommand a = touch->update(tip_at(p)), b = larger->update(tip_at(p));
     ASSERT_LT((a.f_T_W - b.f_T_W).norm(), 1e-9);
     touching += a.touch.in_contact ? 1 : 0;
   }
@@ -106,12 +101,12 @@ void expect_rounded_box(ObjectTouch& touch, const SolidBlock& block, double R) {
     const Vector3d n_W = block.R * n;
     const Vector3d q = block.centre + block.R * (c_O + R * n);
     const Vector3d p = q - depth * n_W;
-    touch.update(at(Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())));
-    touch.update(at(q + 0.01 * n_W));
+    touch.update(tip_at(Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())));
+    touch.update(tip_at(q + 0.01 * n_W));
     // Obliquely, so that the ball has to slide to its place.
-    touch.update(at(p + 0.2 * R * random.direction()));
+    touch.update(tip_at(p + 0.2 * R * random.direction()));
     driver::ForceCommand last;
-    for (int tick = 0; tick < 6; ++tick) last = touch.update(at(p));
+    for (int tick = 0; tick < 6; ++tick) last = touch.update(tip_at(p));
     ASSERT_LT((last.f_T_W - kStiffness * depth * n_W).norm(), 1e-9 * kStiffness) << k;
     ASSERT_LT((last.touch.p_WP - q).norm(), 1e-9) << k;
   }
@@ -146,20 +141,20 @@ TEST(BallShapes, AGrooveKeepsTheBallByItsAngle) {
           support::groove(rise, rise, 0.03, 0.03, {-0.03, -0.01, 0.0005, 0.01, 0.03}).mesh;
       const auto touch = mesh_touch(mesh, R);
       const double height = R / std::sin(half_angle);
-      touch->update(at({0, 0, 0.05}));
+      touch->update(tip_at({0, 0, 0.05}));
       for (int i = 0; i <= 2000; ++i) {
         const double s = 1e-3 * i;
         // Swings between the walls, and down past the bottom.
         const Vector3d p(0.3 * R * std::sin(7 * s), 0.012 * std::sin(3 * s),
                          std::max(0.02 - 0.03 * s, -0.002));
-        const driver::ForceCommand command = touch->update(at(p));
+        const driver::ForceCommand command = touch->update(tip_at(p));
         const Vector3d left(std::sin(rise), 0, std::cos(rise)),
             right(-std::sin(rise), 0, std::cos(rise));
         const std::vector<ActivePlane> planes{{left, R}, {right, R}};
         const Vector3d d = push_out(planes, p, 0, 1e-16).d;
         ASSERT_LT((command.f_T_W - kStiffness * d).norm(), 1e-9 * kStiffness) << R << half_angle;
       }
-      const driver::ForceCommand rest = touch->update(at({0, 0.001, -0.002}));
+      const driver::ForceCommand rest = touch->update(tip_at({0, 0.001, -0.002}));
       EXPECT_NEAR(rest.touch.p_WP.z(), height, 1e-9);
       EXPECT_NEAR(rest.touch.p_WP.x(), 0, 1e-9);
     }
@@ -172,7 +167,7 @@ TEST(BallShapes, ANarrowSlotIsNotEnteredAndAWideOneIs) {
     const auto touch = mesh_touch(slot(width), R);
     driver::ForceCommand last;
     for (int i = 0; i <= 3000; ++i) {
-      last = touch->update(at({2e-4 * std::sin(0.1 * i), 0.001, 0.01 - 1e-5 * i}));
+      last = touch->update(tip_at({2e-4 * std::sin(0.1 * i), 0.001, 0.01 - 1e-5 * i}));
     }
     if (width < 2 * R) {
       // On both rims.
@@ -194,12 +189,12 @@ TEST(BallShapes, AThinPlateIsNotPassedAtTwoMetresPerSecond) {
       Vector3d p(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), 0.03);
       const Vector3d target(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), -0.03);
       const Vector3d step = 2e-3 * (target - p).normalized();
-      touch->update(at({0, 0, 1}));
-      touch->update(at(p));
+      touch->update(tip_at({0, 0, 1}));
+      touch->update(tip_at(p));
       driver::ForceCommand last;
       while (p.z() > -0.03) {
         p += step;
-        last = touch->update(at(p));
+        last = touch->update(tip_at(p));
         ASSERT_EQ(last.touch.in_contact, p.z() < 0.00005 + R);
       }
       ASSERT_NEAR(last.touch.depth, 0.00005 + R - p.z(), 1e-9);
@@ -219,7 +214,7 @@ void expect_like(const Shape& shape, double R, const Primitive& sum, double size
   for (int i = 0; i < 20'000; ++i) {
     if (i % 100 == 0) target = shape.p_WO + random.in_box(size);
     p += 3e-4 * (target - p).normalized();
-    const driver::ForceCommand a = touch->update(at(p)), b = whole->update(at(p));
+    const driver::ForceCommand a = touch->update(tip_at(p)), b = whole->update(tip_at(p));
     ASSERT_LT((a.f_T_W - b.f_T_W).norm(), 1e-9);
     touching += a.touch.in_contact ? 1 : 0;
   }
@@ -265,12 +260,12 @@ void expect_rests(const Shape& shape, double R, double depth_max, Random& random
     const double depth = random.uniform(0.01, 0.45) * depth_max;
     const Vector3d n = shape.R_WO * rest.n_O, q = shape.p_WO + shape.R_WO * rest.q_O;
     const Vector3d p = q - depth * n;
-    touch->update(at(Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())));
-    touch->update(at(q + 0.01 * n));
+    touch->update(tip_at(Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())));
+    touch->update(tip_at(q + 0.01 * n));
     // Obliquely, so that the ball has to slide to its place.
-    touch->update(at(p + 0.2 * depth_max * random.direction()));
+    touch->update(tip_at(p + 0.2 * depth_max * random.direction()));
     driver::ForceCommand last;
-    for (int tick = 0; tick < 6; ++tick) last = touch->update(at(p));
+    for (int tick = 0; tick < 6; ++tick) last = touch->update(tip_at(p));
     ASSERT_LT((last.f_T_W - kStiffness * depth * n).norm(), 1e-9 * kStiffness) << k;
     ASSERT_LT((last.touch.p_WP - q).norm(), 1e-9) << k;
   }
@@ -355,14 +350,14 @@ TEST(BallShapes, AHoleOfATorusThatIsTooNarrowCarriesTheBallOnItsAxis) {
   const double R = 0.012, height = std::sqrt(0.022 * 0.022 - 0.02 * 0.02);
   for (const double side : {1.0, -1.0}) {
     const auto touch = build_primitive_touch(torus, surface(), R);
-    touch->update(at({0, 0, 0.05 * side}));
+    touch->update(tip_at({0, 0, 0.05 * side}));
     driver::ForceCommand last;
     Vector3d before = Vector3d::Zero();
     for (int i = 0; i <= 3000; ++i) {
       const double s = 1e-3 * i;
       const Vector3d p(0.003 * std::sin(9 * s), 0.003 * std::sin(7 * s),
                        side * std::max(-0.001, 0.02 - 0.02 * s));
-      last = touch->update(at(p));
+      last = touch->update(tip_at(p));
       ASSERT_LT((last.f_T_W - before).norm(), 5 * kStiffness * 1e-4) << i;
       before = last.f_T_W;
     }
@@ -386,19 +381,19 @@ TEST(BallShapes, ATickAllocatesNothingAndNanEndsTheContact) {
     EXPECT_EQ(support::heap_calls_of([&] {
                 for (int i = 0; i < 3000; ++i) {
                   const double s = 2e-3 * i;
-                  last = touch->update(at(
+                  last = touch->update(tip_at(
                       {0.01 * std::sin(s), 0.01 * std::cos(s), std::max(0.015, 0.04 - 0.001 * i)}));
                 }
               }),
               0);
     EXPECT_GT(last.f_T_W.norm(), 0.1);
-    EXPECT_EQ(touch->update(at({nan, 0, 0})).f_T_W, Vector3d::Zero());
-    EXPECT_EQ(touch->update(at({0, 0, 1e300})).f_T_W, Vector3d::Zero());
+    EXPECT_EQ(touch->update(tip_at({nan, 0, 0})).f_T_W, Vector3d::Zero());
+    EXPECT_EQ(touch->update(tip_at({0, 0, 1e300})).f_T_W, Vector3d::Zero());
     // A tip that is inside on the first tick feels nothing until it has been outside.
-    EXPECT_EQ(touch->update(at({0, 0, 0.0215})).f_T_W, Vector3d::Zero());
-    EXPECT_EQ(touch->update(at({0, 0, 0.0205})).f_T_W, Vector3d::Zero());
-    EXPECT_EQ(touch->update(at({0, 0, 0.05})).f_T_W, Vector3d::Zero());
-    EXPECT_GT(touch->update(at({0, 0, 0.0205})).f_T_W.norm(), 0.1);
+    EXPECT_EQ(touch->update(tip_at({0, 0, 0.0215})).f_T_W, Vector3d::Zero());
+    EXPECT_EQ(touch->update(tip_at({0, 0, 0.0205})).f_T_W, Vector3d::Zero());
+    EXPECT_EQ(touch->update(tip_at({0, 0, 0.05})).f_T_W, Vector3d::Zero());
+    EXPECT_GT(touch->update(tip_at({0, 0, 0.0205})).f_T_W.norm(), 0.1);
   }
 }
 

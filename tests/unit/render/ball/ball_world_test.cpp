@@ -12,7 +12,7 @@
 
 #include "support/box_union.h"
 #include "support/heap_guard.h"
-#include "thimble/driver/device_state.h"
+#include "support/tip_at.h"
 #include "thimble/render/build_primitive_touch.h"
 #include "thimble/render/scene_touch.h"
 #include "world/contact_world.h"
@@ -22,14 +22,9 @@ namespace {
 
 using Eigen::Vector3d;
 using support::SolidBlock;
+using support::tip_at;
 
 constexpr double kStiffness = 800, kRadius = 0.003;
-
-driver::DeviceState at(const Vector3d& p) {
-  driver::DeviceState state;
-  state.p_WT = p;
-  return state;
-}
 
 /// Boxes as meshes, or as shapes without one.
 SceneTouch scene_of(const std::vector<SolidBlock>& blocks, bool meshes) {
@@ -53,11 +48,11 @@ TEST_P(BallWorld, ASeamOfFlushBoxesIsNotFelt) {
                                {.centre = {0.015, 0, -0.01}, .half = {0.015, 0.03, 0.01}}},
                               GetParam());
   for (const int direction : {1, -1}) {
-    scene(at({-0.008 * direction, 0.001, 0.02}));
+    scene(tip_at({-0.008 * direction, 0.001, 0.02}));
     for (int i = 0; i <= 4000; ++i) {
       const double x = direction * (-0.008 + 4e-6 * i);
       const double z = kRadius + std::max(-0.0008, 0.0008 - 16e-6 * i);
-      const driver::ForceCommand one = scene(at({x, 0.001, z}));
+      const driver::ForceCommand one = scene(tip_at({x, 0.001, z}));
       const Vector3d f(0, 0, kStiffness * std::max(0.0, kRadius - z));
       ASSERT_LT((one.f_T_W - f).norm(), 1e-6) << i;
     }
@@ -70,13 +65,13 @@ TEST_P(BallWorld, ABlockOnATableStopsTheBallByItsRadius) {
   SceneTouch scene = scene_of({{.centre = {0, 0, -0.01}, .half = {0.03, 0.03, 0.01}},
                                {.centre = {0.015, 0, 0.0075}, .half = {0.015, 0.03, 0.0075}}},
                               GetParam());
-  scene(at({-0.01, 0.001, 0.02}));
+  scene(tip_at({-0.01, 0.001, 0.02}));
   driver::ForceCommand last;
   EXPECT_EQ(support::heap_calls_of([&] {
               for (int i = 0; i <= 2000; ++i) {
                 const double z = kRadius + std::max(-0.002, 0.002 - 1e-5 * i);
                 const double x = -0.01 + std::max(0, i - 600) * 8e-6;  // up to 1.2 mm
-                last = scene(at({x, 0.001, z}));
+                last = scene(tip_at({x, 0.001, z}));
                 const Vector3d f(-kStiffness * std::max(0.0, x + kRadius), 0,
                                  kStiffness * std::max(0.0, kRadius - z));
                 ASSERT_LT((last.f_T_W - f).norm(), 1e-6) << i;
@@ -92,7 +87,7 @@ TEST_P(BallWorld, ABallOverTheRimRollsOffOneBoxOntoTheNextOne) {
   SceneTouch scene = scene_of({{.centre = {-0.015, 0, -0.01}, .half = {0.015, 0.03, 0.01}},
                                {.centre = {0.015, 0, -0.012}, .half = {0.015, 0.03, 0.01}}},
                               GetParam());
-  scene(at({-0.008, 0.001, 0.02}));
+  scene(tip_at({-0.008, 0.001, 0.02}));
   const double depth = 0.0005;
   int rim = 0;
   for (int i = 0; i <= 4000; ++i) {
@@ -102,7 +97,7 @@ TEST_P(BallWorld, ABallOverTheRimRollsOffOneBoxOntoTheNextOne) {
     double height = -0.002 + kRadius;
     if (over < kRadius) height = std::max(height, std::sqrt(kRadius * kRadius - over * over));
     const Vector3d p(x, 0.001, height - std::min(depth, 1e-6 * i));
-    scene(at(p));
+    scene(tip_at(p));
     const Vector3d q = scene.world()->proxy();
     const double first = std::hypot(std::max(0.0, q.x()), q.z()), second = q.z() + 0.002;
     const double least = q.x() < 0 ? q.z() : std::min(first, second);

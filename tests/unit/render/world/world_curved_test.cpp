@@ -222,14 +222,14 @@ TEST(WorldCurved, TheProxyRestsAgainstTwoRoundShapesThatOverlap) {
     }
     SceneTouch scene(std::move(objects));
     Vector3d p = 0.1 * random.direction(), target = random.in_box(0.01);
-    scene(at(p));
+    scene(support::tip_at(p));
     for (int tick = 0; tick < kTicks; ++tick) {
       if (random.uniform(0, 1) < 0.004) target = random.in_box(0.025);
       const Vector3d way = target - p;
       p += std::min(1.0, random.uniform(0, 2e-4) / way.norm()) * way;
       const Vector3d deep = p - scene.world()->proxy();
       if (deep.norm() > 0.003) p -= (1 - 0.003 / deep.norm()) * deep;
-      scene(at(p));
+      scene(support::tip_at(p));
       const Vector3d q = scene.world()->proxy();
       if (scene.world()->active_count() > 0) ++touching;
       if (scene.world()->active_count() > 1) ++several;

@@ -18,7 +18,8 @@ struct HandWaypoint {
   std::optional<std::string> on;  ///< Object to touch; empty for a free point.
   /// Free point, or the point near which the closest point of the surface is used, in the world, m.
   Eigen::Vector3d p_W{0, 0, 0};
-  double press = 0;   ///< Depth of the hand's target below the surface, m.
+  /// Depth of the hand's target below the surface, m; less the radius of a tip that is a ball.
+  double press = 0;
   bool stop = false;  ///< True if the hand stops here.
 
   /// Returns whether two waypoints are equal.

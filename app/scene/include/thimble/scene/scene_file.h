@@ -46,6 +46,8 @@ struct SceneObject {
   std::string name;                  ///< Name, unique in the scene.
   std::filesystem::path mesh_file;   ///< Mesh file; empty for a shape or a field.
   bool paged = false;                ///< True if that is a page file, which stays mostly on disk.
+  /// Memory for the pages of a page file, MiB; empty: that of render::PagingSettings.
+  std::optional<std::size_t> page_budget;
   std::optional<SceneShape> shape;   ///< Shape, if used instead of a mesh.
   render::FieldBuilder build_field;  ///< Field, if used instead of a mesh; it has no surface.
   std::optional<double> size;        ///< Largest side of the mesh's bounding box, m.

@@ -33,6 +33,7 @@ struct RunFigures {
   double requested_rate = 0;                 ///< Requested rate of the servo loop, Hz.
   double force_limit = 0;                    ///< Force limit of the safety gate, N.
   std::vector<std::string> inside_at_start;  ///< Names of the objects in which the tip started.
+  double tip_radius = 0;                     ///< Of a tip that is a ball, m; 0: a point.
   std::size_t triangles = 0;  ///< Number of touchable triangles, in memory and on disk.
   RunStatistics statistics;   ///< Statistics of the ticks.
   /// Intervals inside an object without a force; found after the run.
