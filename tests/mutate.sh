@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
 # Changes single places of driver, render, scene and session and checks whether a test fails. A surviving mutant is a fault
 # that no test would detect. Writes tests/MUTANTS.md; at least 90 % must be killed.
-#   tests/mutate.sh [--count N] [--seed S] [--library driver|render|scene|session] [--survivors] [--again FILE:LINE]...
+#   tests/mutate.sh [--count N] [--seed S] [--library driver|render|scene|session] [--budget S]
+#                   [--survivors] [--again FILE:LINE]...
 #     --count N     a sample of N mutants, as many of each library; 800 without it
+#     --budget S    seconds of tests to try on a mutant, 60 without it; what they do not detect counts as a survivor
 #     --survivors   after new tests: only the mutants that survived the last run, or were not reached when it was
 #                   interrupted; the results of the others are reused
 #     --again       only mutants of that line; nothing is written

@@ -82,9 +82,10 @@ void add_force(const DrawnScene& scene, const OneArm& moment, double thick, Touc
   const Point force = point(moment.tick.f_sent_W);
   const double size = force.norm();
   if (!(size > kThinnest)) return;  // NaN: no arrow
-  const Point from = touched_point(moment);
-  if (!from.allFinite()) return;
   const Point along = force / size;
+  // At the top of a ball, which would hide it.
+  const Point from = drawn_tip(moment) + moment.tip_radius * along;
+  if (!from.allFinite()) return;
   const double length = std::max(arrow_length(size, scene), 6 * thick);
   const Point neck = from + std::max(length - 5 * thick, 0.4 * length) * along;
   const Point tip = from + length * along;

@@ -55,6 +55,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--library", action="append")
+    parser.add_argument("--budget", type=float, default=60)
     parser.add_argument("--again", action="append", default=[])
     parser.add_argument("--survivors", action="store_true")
     options = parser.parse_args()
@@ -69,8 +70,8 @@ def main():
     print(f"{len(chosen)} mutants built, {uncompilable} do not compile", flush=True)
     # Scenes with a scanned mesh search beside their own sources, which are a copy here.
     os.environ.setdefault("THIMBLE_MESHES", str(options.root / "build/meshes"))
-    trials = Trials(tree.build, plan["programs"], options.jobs)
-    tests = trials.measure()
+    trials = Trials(tree.build, plan["programs"], options.jobs, options.budget)
+    tests = trials.measure(options.work / "tests.json")
     print(f"{len(tests)} tests take {sum(test.seconds for test in tests):.0f} s", flush=True)
 
     results_file = options.work / "results.json"

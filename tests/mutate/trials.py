@@ -2,6 +2,7 @@
 import concurrent.futures
 import dataclasses
 import hashlib
+import json
 import os
 import pathlib
 import re
@@ -29,8 +30,9 @@ class Test:
 class Trials:
     """The test programs of a build."""
 
-    def __init__(self, build, programs, jobs):
+    def __init__(self, build, programs, jobs, budget):
         self.jobs = jobs
+        self.budget = budget
         self.programs = {name: next(p for p in build.rglob(name) if p.is_file() and os.access(p, os.X_OK))
                          for name in programs}
         self.tests = []
@@ -79,13 +81,25 @@ class Trials:
             elif line.endswith("."):
                 suite = line
 
-    def measure(self):
-        """Runs every test without a mutant and records the mutants that it reaches; exits if one fails."""
+    def measure(self, store):
+        """Runs every test without a mutant and records the mutants that it reaches; exits if one fails. Reads the
+        result from the file `store` instead if the programs are those for which it was written."""
+        built = hashlib.sha256()
+        for path in self.programs.values():
+            built.update(path.read_bytes())
+        if store.exists():
+            known = json.loads(store.read_text())
+            if known["programs"] == built.hexdigest():
+                self.tests = [Test(program, name, seconds, frozenset(reached))
+                              for program, name, seconds, reached in known["tests"]]
+                return self.tests
         every = [(program, name) for program in self.programs for name in self.names_of(program)]
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             self.tests = list(pool.map(lambda one: self.measure_one(*one), every))
         if None in self.tests:
             sys.exit("Tests fail without any mutant. Fix them first.")
+        store.write_text(json.dumps({"programs": built.hexdigest(),
+                                     "tests": [[t.program, t.name, t.seconds, sorted(t.reached)] for t in self.tests]}))
         return self.tests
 
     def measure_one(self, program, name):
@@ -100,7 +114,9 @@ class Trials:
         return None
 
     def killer_of(self, ident):
-        """Returns how a mutant was detected and in which run; an empty text if no test detects or reaches it."""
+        """Returns how a mutant was detected and in which run; an empty text if no test detects or reaches it. Tests
+        that take more than the budget together are not run, so a mutant in code that all tests reach may count as
+        a survivor although a slow test would detect it."""
         own = sorted((test for test in self.tests if ident in test.reached), key=lambda test: test.seconds)
         if not own:
             return "", "unreached"
@@ -110,7 +126,11 @@ class Trials:
                 quick.setdefault(test.program, []).append(test)
         runs = sorted(quick.values(), key=lambda tests: sum(test.seconds for test in tests))
         runs += [[test] for test in own if test.seconds >= QUICK]
+        spent = 0
         for tests in runs:
+            if spent > self.budget:
+                break
+            spent += sum(test.seconds for test in tests)
             limit = LIMIT_TIMES * sum(test.seconds for test in tests) + LIMIT_MORE
             code, output, _ = self.run(tests[0].program, [test.name for test in tests],
                                        {"THIMBLE_MUTANT": str(ident)}, limit)

@@ -102,7 +102,9 @@ TEST(PagedScene, RefusesABudgetThatIsInvalidOrForAMeshInMemory) {
             std::string::npos);
   const auto file = support::scratch_folder() / "ball.yaml";
   std::ofstream(file) << "name: ball\narm: vintage_phantom\nduration: 1\nobjects:\n"
-                         "  - {name: b, mesh: cgal:ball.off, stiffness: 100, budget: 4}\n"
+                         "  - {name: b, mesh: \""
+                      << THIMBLE_SOURCE_DIR
+                      << "/app/scenes/clay_ball.off\", stiffness: 100, budget: 4}\n"
                          "hand: {path: [{t: 0, at: [0, 0, 0]}]}\n";
   const auto read = scene::load_scene(file);
   ASSERT_FALSE(read);

@@ -36,6 +36,9 @@ constexpr std::array kAxes{
     AxisMaker{"safety_noise", safety_noise_axis},
     AxisMaker{"effects", effects_axis},
     AxisMaker{"float", float_axis},
+    AxisMaker{"seam", seam_axis},
+    AxisMaker{"objects", objects_axis},
+    AxisMaker{"tip_radius", tip_radius_axis},
 };
 
 }  // namespace

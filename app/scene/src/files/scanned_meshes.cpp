@@ -113,7 +113,7 @@ driver::Result<fs::path> find_scan(const std::string& name, const ScanPlaces& pl
   return driver::Error{fmt::format(
       "{} is a scan of Debian's package libcgal-demo, and is not in {}. Install it (sudo apt "
       "install libcgal-demo), run app/fetch_meshes.sh in the sources, or set THIMBLE_MESHES to a "
-      "folder with it. `thimble run water_balloon` uses a mesh that comes with Thimble.",
+      "folder with it; `thimble run water_balloon` uses a mesh that comes with Thimble",
       name, looked)};
 }
 

@@ -41,5 +41,8 @@ AccuracyAxis safety_stiffness_axis();
 AccuracyAxis safety_noise_axis();
 AccuracyAxis effects_axis();
 AccuracyAxis float_axis();
+AccuracyAxis seam_axis();
+AccuracyAxis objects_axis();
+AccuracyAxis tip_radius_axis();
 
 }  // namespace thimble::studies
