@@ -88,6 +88,14 @@ class ServoLoopTest : public ::testing::Test {
   std::atomic<bool> stop_{false};
 };
 
+TEST(ForceCommand, ScalesForcesAndStoredEnergyAlike) {
+  ForceCommand command{.f_T_W = {4, -2, 1}, .stored = 3, .f_program_W = {2, 0, -6}};
+  scale(command, 0.25);
+  EXPECT_EQ(command.f_T_W, Eigen::Vector3d(1, -0.5, 0.25));
+  EXPECT_EQ(command.f_program_W, Eigen::Vector3d(0.5, 0, -1.5));
+  EXPECT_EQ(command.stored, 0.75);
+}
+
 TEST_F(ServoLoopTest, RunsEvenlyAndEndsWithZeroForce) {
   VirtualClock clock;
   Records records(2000);

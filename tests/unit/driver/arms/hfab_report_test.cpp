@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "arms/hfab/hfab_wire.h"
 #include "support/random.h"
 
 namespace thimble::driver::hfab {
@@ -57,6 +58,15 @@ TEST(HfabReport, AnyBytesOfTheRightLengthRoundTrip) {
     for (auto& byte : bytes) byte = static_cast<std::byte>(random.bits() & 0xff);
     EXPECT_EQ(encode_input(*decode_input(bytes)), bytes);
     EXPECT_EQ(encode_output(*decode_output(bytes)), bytes);
+  }
+}
+
+TEST(HfabReport, ButtonIsTheLowestBitOfTheInformation) {
+  for (const int info : {0, 1, 2, 3, 0x7ffe, -1}) {
+    ArmReading reading;
+    ASSERT_TRUE(
+        ReportWire::decode(encode_input({.info = static_cast<std::int16_t>(info)}), reading));
+    EXPECT_EQ(reading.buttons, info & 1) << info;
   }
 }
 

@@ -4,8 +4,11 @@
 
 #include <Eigen/Geometry>
 #include <chrono>
+#include <cstdlib>
 #include <numbers>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "support/boards/link_fault.h"
 #include "support/heap_guard.h"
@@ -13,6 +16,7 @@
 #include "support/patient_clock.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/device.h"
+#include "vendors/linked_arms.h"
 
 namespace thimble::driver {
 namespace {
@@ -220,6 +224,32 @@ TEST_F(HaplyLinkTest, ListsTheArmsOfAServiceAndSendsNothing) {
   EXPECT_EQ(service_->log().messages, 0);
   greet(HaplyGreeting::kUncalibrated);
   EXPECT_NE(haply::find_arms(service_->port())->front().trouble, "");
+}
+
+TEST_F(HaplyLinkTest, ArmIsFoundAtThePortOfTheUser) {
+  greet();
+  setenv("THIMBLE_HAPLY_PORT", std::to_string(service_->port()).c_str(), 1);
+  const std::vector<FoundArm> found = find_linked_arms();
+  unsetenv("THIMBLE_HAPLY_PORT");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].kind, ArmKind::kHaply);
+  EXPECT_EQ(found[0].board, BoardKind::kHaplyService);
+  EXPECT_EQ(found[0].serial, "049D");
+  EXPECT_EQ(found[0].address, "port " + std::to_string(service_->port()));
+  EXPECT_EQ(found[0].software, R"({"major_version":3,"minor_version":1})");
+  EXPECT_TRUE(found[0].accessible);
+}
+
+TEST(HaplyPort, IsThatOfTheServiceUnlessTheUserSetsAValidOne) {
+  const std::uint16_t usual = haply::port_of_user();
+  EXPECT_GT(usual, 0);
+  for (const char* text : {"0", "-1", "65536", "80x", ""}) {
+    setenv("THIMBLE_HAPLY_PORT", text, 1);
+    EXPECT_EQ(haply::port_of_user(), usual) << text;
+  }
+  setenv("THIMBLE_HAPLY_PORT", "12345", 1);
+  EXPECT_EQ(haply::port_of_user(), 12345);
+  unsetenv("THIMBLE_HAPLY_PORT");
 }
 
 // The rows of the fault matrix for an arm behind a service: the fault of the service, the fault
