@@ -13,6 +13,7 @@
 
 #include "meshes/mesh_join.h"
 #include "meshes/object_mesh.h"
+#include "meshes/object_tracker.h"
 #include "still_surface.h"
 #include "thimble/scene/scene_file.h"
 
@@ -44,6 +45,7 @@ struct MeshKey {
         scale(object.scale),
         repair(object.repair),
         sheet_thickness(object.sheet_thickness),
+        decides_tracker(mesh_decides_tracker(object)),
         R_WO(object.R_WO),
         p_WO(object.p_WO) {}
 
@@ -54,6 +56,7 @@ struct MeshKey {
   std::optional<double> size, scale;
   bool repair;
   std::optional<double> sheet_thickness;
+  bool decides_tracker;
   Eigen::Matrix3d R_WO;
   Eigen::Vector3d p_WO;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 
 #include "figures/lost_contacts.h"
 
@@ -34,6 +35,15 @@ RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& rec
   figures.requested_rate = setup.scene().rate;
   figures.force_limit = setup.arm_file(arm).limits.force_max;
   figures.inside_at_start = setup.inside_at_start(arm);
+  for (const scene::ObjectTracker& one : setup.objects().trackers()) {
+    if (one.contact.tip_radius > 0) continue;
+    figures.trackers.push_back(
+        {.object = setup.scene().objects[one.object].name,
+         .tracker =
+             std::string(render::kTrackerNames[static_cast<std::size_t>(one.contact.tracker)]),
+         .chosen = one.chosen,
+         .reason = one.reason});
+  }
   figures.triangles = setup.objects().triangles();
   figures.paging = setup.objects().paging();
   figures.wire = device.wire_counters();
