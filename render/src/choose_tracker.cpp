@@ -125,8 +125,6 @@ ChosenTracker choose_by_shape(const SurfaceTurns& turns, const ContactChoice& co
   // Only named if an edge depends on it.
   if (!contact.crease_angle && turns.classes_used > classes) {
     chosen.contact.crease_angle = SurfaceTurns::turn_of(classes - 1);
-    chosen.reason += fmt::format("; edges of more than {:.1f} degrees stay sharp",
-                                 kDegrees * *chosen.contact.crease_angle);
   }
   return chosen;
 }

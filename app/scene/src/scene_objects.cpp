@@ -164,7 +164,7 @@ driver::Result<void> SceneObjects::Meshes::load(const Scene& scene, std::vector<
     if (!judged) return judged.error();
     if (!judged->empty()) notes.push_back(*judged);
     notes.insert(notes.end(), mesh.notes.begin(), mesh.notes.end());
-    ObjectTracker tracker = tracker_of(object, mesh);
+    ObjectTracker tracker = tracker_of(object, *loaded, *store);
     tracker.object = own_W.size();
     trackers.push_back(std::move(tracker));
     own_W.emplace_back(*loaded, &mesh.mesh_W);

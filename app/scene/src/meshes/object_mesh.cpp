@@ -8,7 +8,6 @@
 
 #include "mesh/repair/orient_mesh.h"
 #include "mesh/repair/touching_parts.h"
-#include "meshes/object_tracker.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/repair_mesh.h"
 #include "thimble/render/mesh/thicken_sheets.h"
@@ -141,7 +140,6 @@ driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object) {
   for (const Eigen::Vector3d& vertex : done.mesh_W.vertices) box.extend(vertex);
   done.size = {
       .side = box.sizes().maxCoeff(), .kind = info.kind, .has_unit = info.unit.has_value()};
-  if (mesh_decides_tracker(object)) done.tracker = render::choose_tracker(done.mesh_W);
   return done;
 }
 

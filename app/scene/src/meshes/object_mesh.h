@@ -1,14 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "disk_paging/paged_contact.h"
 #include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
-#include "thimble/render/choose_tracker.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/scene/scene_file.h"
 
@@ -74,9 +72,6 @@ struct ObjectMesh {
   MeshPlacement place;             ///< Placement of the file's coordinates in the world.
   ObjectSize size;                 ///< Size of the mesh in the world.
   std::vector<std::string> notes;  ///< Repairs, omissions and assumptions, one sentence each.
-  /// Tracker that suits the mesh, with no other setting than its crease angle; empty unless the
-  /// object leaves the choice to its mesh.
-  std::optional<render::ChosenTracker> tracker;
 };
 
 /// Reads the mesh file of an object, repairs it (`repair: true`), places it in the world, and makes

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numbers>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -28,34 +30,30 @@ render::SurfaceChoice surface_of(const SceneObject& object) {
           .shape = object.body.shape};
 }
 
-bool mesh_decides_tracker(const SceneObject& object) {
-  return !object.shape && !object.build_field && !object.paged && !object.repair &&
-         is_chosen(object) && !render::required_tracker(object.contact, surface_of(object));
-}
-
-ObjectTracker tracker_of(const SceneObject& object, const ObjectMesh& mesh) {
+ObjectTracker tracker_of(const SceneObject& object, const std::shared_ptr<const ObjectMesh>& mesh,
+                         SharedMeshes& meshes) {
   ObjectTracker found{.contact = object.contact};
   if (object.contact.tip_radius > 0) return found;
-  if (object.sheet_thickness && !object.tracker_named) {
+  const auto choose = [&found](const render::ContactChoice& contact, const std::string& reason) {
+    found.contact = contact;
     found.chosen = true;
-    found.reason = "a sheet";
+    found.reason = reason;
     return found;
-  }
+  };
+  if (object.sheet_thickness && !object.tracker_named) return choose(object.contact, "a sheet");
   if (!is_chosen(object)) return found;
-  found.chosen = true;
-  if (auto required = render::required_tracker(object.contact, surface_of(object))) {
-    found.contact.tracker = required->contact.tracker;
-    found.reason = std::move(required->reason);
-  } else if (object.repair || !mesh.tracker) {
-    found.reason = "its mesh is repaired";
-  } else {
-    found.contact.tracker = mesh.tracker->contact.tracker;
-    found.reason = mesh.tracker->reason;
-    if (!found.contact.crease_angle) {
-      found.contact.crease_angle = mesh.tracker->contact.crease_angle;
-    }
+  if (const auto required = render::required_tracker(object.contact, surface_of(object))) {
+    return choose(required->contact, required->reason);
   }
-  return found;
+  if (object.repair) return choose(object.contact, "its mesh is repaired");
+  const auto suitable = meshes.tracker(mesh);
+  render::ContactChoice contact = object.contact;
+  contact.tracker = suitable->contact.tracker;
+  if (contact.crease_angle || !suitable->contact.crease_angle) {
+    return choose(contact, suitable->reason);
+  }
+  contact.crease_angle = suitable->contact.crease_angle;
+  return choose(contact, suitable->reason);
 }
 
 std::vector<std::string> describe_trackers(const Scene& scene,
@@ -68,9 +66,14 @@ std::vector<std::string> describe_trackers(const Scene& scene,
   std::vector<Line> lines;
   for (const ObjectTracker& one : trackers) {
     if (!one.chosen) continue;
-    std::string end =
-        fmt::format("{} ({})", render::kTrackerNames[static_cast<std::size_t>(one.contact.tracker)],
-                    one.reason);
+    const std::optional<double>& crease = one.contact.crease_angle;
+    const bool creases = crease && one.contact.tracker == TrackerChoice::kPacked;
+    std::string end = fmt::format(
+        "{} ({}{})", render::kTrackerNames[static_cast<std::size_t>(one.contact.tracker)],
+        one.reason,
+        creases ? fmt::format("; edges of more than {:.1f} degrees stay sharp",
+                              *crease * 180 / std::numbers::pi)
+                : "");
     auto line = std::find_if(lines.begin(), lines.end(),
                              [&end](const Line& other) { return other.end == end; });
     if (line == lines.end()) line = lines.insert(lines.end(), Line{.end = std::move(end)});

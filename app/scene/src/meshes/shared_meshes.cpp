@@ -13,8 +13,8 @@
 
 #include "meshes/mesh_join.h"
 #include "meshes/object_mesh.h"
-#include "meshes/object_tracker.h"
 #include "still_surface.h"
+#include "thimble/render/choose_tracker.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::scene {
@@ -45,7 +45,6 @@ struct MeshKey {
         scale(object.scale),
         repair(object.repair),
         sheet_thickness(object.sheet_thickness),
-        decides_tracker(mesh_decides_tracker(object)),
         R_WO(object.R_WO),
         p_WO(object.p_WO) {}
 
@@ -56,7 +55,6 @@ struct MeshKey {
   std::optional<double> size, scale;
   bool repair;
   std::optional<double> sheet_thickness;
-  bool decides_tracker;
   Eigen::Matrix3d R_WO;
   Eigen::Vector3d p_WO;
 };
@@ -75,8 +73,16 @@ class MeshCache {
         .second;
   }
   std::size_t size() const { return entries_.size(); }
+  bool holds(const Value* value) const {
+    return std::any_of(entries_.begin(), entries_.end(),
+                       [value](const auto& entry) { return entry.second.get() == value; });
+  }
   void drop_unused() {
     drop_if([](const std::shared_ptr<const Value>& value) { return value.use_count() == 1; });
+  }
+  template <class Unused>
+  void drop_if_key(const Unused& unused) {
+    std::erase_if(entries_, [&](const auto& entry) { return unused(entry.first); });
   }
   template <class Unused>
   void drop_if(const Unused& unused) {
@@ -108,6 +114,7 @@ bool same(const render::TriangleMesh& a, const render::TriangleMesh& b) {
 struct SharedMeshes::Held {
   std::mutex mutex;
   MeshCache<MeshKey, ObjectMesh> files;
+  MeshCache<const ObjectMesh*, render::ChosenTracker> trackers;  // of `files`
   std::unordered_multimap<std::uint64_t, MeshPointer> shapes;  // by `hash_of`
   MeshCache<std::vector<MeshPointer>, render::TriangleMesh> joined;
   MeshCache<std::pair<MeshPointer, render::ContactChoice>, render::StillSurface> surfaces;
@@ -134,6 +141,7 @@ void SharedMeshes::drop_unused() {
   held_->surfaces.drop_if([](const auto& still) { return still->search.use_count() == 1; });
   held_->joined.drop_unused();
   held_->files.drop_unused();
+  held_->trackers.drop_if_key([this](const ObjectMesh* mesh) { return !held_->files.holds(mesh); });
   std::erase_if(held_->shapes, [](const auto& shape) { return shape.second.use_count() == 1; });
 }
 
@@ -145,6 +153,13 @@ driver::Result<std::shared_ptr<const ObjectMesh>> SharedMeshes::object_mesh(
   auto loaded = load_object_mesh(object);
   if (!loaded) return loaded.error();
   return held_->files.keep(std::move(key), std::move(loaded).value());
+}
+
+std::shared_ptr<const render::ChosenTracker> SharedMeshes::tracker(
+    const std::shared_ptr<const ObjectMesh>& mesh) {
+  const std::scoped_lock lock(held_->mutex);
+  if (auto found = held_->trackers.find(mesh.get())) return found;
+  return held_->trackers.keep(mesh.get(), render::choose_tracker(mesh->mesh_W));
 }
 
 MeshPointer SharedMeshes::mesh_like(const render::TriangleMesh& mesh_W) {
