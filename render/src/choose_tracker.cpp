@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <string>
@@ -18,26 +18,29 @@ namespace {
 // coarsest smooth mesh of the table is a ball of 80 triangles]
 constexpr std::size_t kTrianglesMin = 50;
 
-// A mesh is faceted if less than this share of its area curves. [measured: on plates and anchors
-// with holes, up to 0.29, the flat parts are felt the same; turned parts have 0.45 and more]
-constexpr double kCurvedMin = 0.33;
+// A mesh is faceted if less than this share of its area curves. [measured: prisms whose sides are
+// split have 0.33, plates and anchors with holes up to 0.38; turned parts and scans 0.5 and more]
+constexpr double kCurvedMin = 0.4;
 
-// A mesh is faceted if half of its curved area turns by more over an edge, rad. [measured: 25
-// degrees; the error of a smoothed prism passes that of its facets, taken as a cylinder, at none of
-// the sides, but exceeds 2 % of the force below 15 sides]
+// A mesh is faceted if half of its curved area turns by more than this over an edge, rad: 25
+// degrees. [measured: a nut of ten sides turns by 36 degrees, and smoothing it makes an error of
+// the whole force; a ball of 80 triangles turns by 18 degrees, and its facets make such an error]
 constexpr double kMedianTurnMax = 0.436;
 
-// Share of the area that may rise because flat triangles have narrow curved neighbours. [measured:
-// up to 0.09 on scans, 0.15 and more on parts with fillets]
+// Share of the area that may bulge because large triangles have narrow curved neighbours.
+// [measured: up to 0.09 on scans, 0.15 and more on parts with fillets, which smoothing would spoil]
 constexpr double kUnevenMax = 0.1;
 
-// The crease angle is at least this one, rad, and at least this multiple of the turn that 90 % of
-// the curved area does not exceed. [measured: 20 degrees keeps every edge of the turned parts and
-// of the fan disk; on scans the multiple reaches the default of 43 degrees]
-constexpr double kCreaseMin = 0.35;
-constexpr double kCreasePerTurn = 3;
+// Edges are real, not steps of a smooth surface, if they turn by more than kEdgeMin (rad), if
+// almost no edge turns by less than that and more than half of it, and if they have less than this
+// share of the area at bent edges. [chosen: a tube of 16 sides has half of it at edges of 22.5
+// degrees]
+constexpr double kEdgeMin = 0.35;
+constexpr double kGapRatio = 2;
+constexpr double kGapShare = 0.002;
+constexpr double kEdgesMax = 0.4;
 
-// If narrow triangles lower the crease angle, it must clear the curved area by this factor.
+// If large triangles lower the crease angle, it must clear 90 % of the curved area by this factor.
 // [chosen: else it cuts through what is meant to be smooth]
 constexpr double kClear = 1.5;
 
@@ -53,23 +56,23 @@ ChosenTracker with(ContactChoice contact, TrackerChoice tracker, std::string rea
 struct UpTo {
   double curved = 0;  // share of the area
   double uneven = 0;
-  double median = 0, high = 0;  // turns of 50 and 90 % of the area at curved edges, rad
+  double edges = 0;             // share of the area at curved edges
+  double median = 0, high = 0;  // turns that 50 and 90 % of it do not exceed, rad
 };
 
 // Returns the sums over the first `classes` classes.
 UpTo sums(const SurfaceTurns& turns, std::size_t classes) {
   UpTo sum;
-  double edges = 0;
   for (std::size_t i = 0; i < classes; ++i) {
     sum.curved += turns.curved[i];
     sum.uneven += turns.uneven[i];
-    edges += turns.edges[i];
+    sum.edges += turns.edges[i];
   }
   const auto turn_at = [&](double share) {
     double below = 0;
     for (std::size_t i = 0; i < classes; ++i) {
       below += turns.edges[i];
-      if (turns.edges[i] > 0 && below >= share * edges) return SurfaceTurns::turn_of(i);
+      if (turns.edges[i] > 0 && below >= share * sum.edges) return SurfaceTurns::turn_of(i);
     }
     return 0.0;
   };
@@ -78,12 +81,36 @@ UpTo sums(const SurfaceTurns& turns, std::size_t classes) {
   return sum;
 }
 
-// Returns the number of classes below the crease angle; kNoClass + 1 if none keeps flat faces flat.
+// Returns the number of classes below the real edges of a mesh; all classes if it has none.
+std::size_t classes_below_edges(const SurfaceTurns& turns) {
+  const double all = sums(turns, SurfaceTurns::kClasses).edges;
+  std::size_t found = SurfaceTurns::kClasses;
+  double widest = kGapRatio;
+  double above = 0;  // at edges of class `end` and more
+  for (std::size_t end = SurfaceTurns::kClasses - 1; end > 0; --end) {
+    above += turns.edges[end];
+    if (above > kEdgesMax * all) break;
+    const double edge = SurfaceTurns::turn_of(end - 1);  // all of these turn by more
+    if (turns.edges[end] == 0 || edge < kEdgeMin) continue;
+    std::size_t begin = end;
+    double inside = 0;
+    while (begin > 0 && inside + turns.edges[begin - 1] <= kGapShare * all) {
+      inside += turns.edges[--begin];
+    }
+    if (begin == 0) continue;  // no edge turns by less
+    const double step = SurfaceTurns::turn_of(begin - 1);
+    if (edge < widest * step) continue;
+    widest = edge / step;
+    const double crease = std::sqrt(edge * step);
+    found = begin;
+    while (SurfaceTurns::turn_of(found - 1) < crease) ++found;
+  }
+  return found;
+}
+
+// Returns the number of classes below the crease angle; kNoClass + 1 if faces bulge at any.
 std::size_t classes_below_crease(const SurfaceTurns& turns) {
-  const double wanted =
-      std::max(kCreaseMin, kCreasePerTurn * sums(turns, SurfaceTurns::kClasses).high);
-  std::size_t classes = SurfaceTurns::kClasses;
-  while (classes > 1 && SurfaceTurns::turn_of(classes - 2) >= wanted) --classes;
+  std::size_t classes = classes_below_edges(turns);
   if (sums(turns, classes).uneven <= kUnevenMax) return classes;
   for (; classes > 0; --classes) {
     const UpTo sum = sums(turns, classes);

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <utility>
 
+#include "thimble/render/choose_tracker.h"
+
 namespace thimble::scene {
 namespace {
 
@@ -32,7 +34,8 @@ render::SurfaceChoice surface_of(const SceneObject& object) {
 
 ObjectTracker tracker_of(const SceneObject& object, const std::shared_ptr<const ObjectMesh>& mesh,
                          SharedMeshes& meshes) {
-  ObjectTracker found{.contact = object.contact};
+  ObjectTracker found;
+  found.contact = object.contact;
   if (object.contact.tip_radius > 0) return found;
   const auto choose = [&found](const render::ContactChoice& contact, const std::string& reason) {
     found.contact = contact;
@@ -76,7 +79,7 @@ std::vector<std::string> describe_trackers(const Scene& scene,
                 : "");
     auto line = std::find_if(lines.begin(), lines.end(),
                              [&end](const Line& other) { return other.end == end; });
-    if (line == lines.end()) line = lines.insert(lines.end(), Line{.end = std::move(end)});
+    if (line == lines.end()) line = lines.insert(lines.end(), Line{std::move(end), {}, 0});
     if (line->objects < kNamesMax) {
       line->names += (line->objects > 0 ? ", " : "") + scene.objects[one.object].name;
     }

@@ -44,12 +44,14 @@ struct Case {
 };
 
 TriangleMesh prism(int sides) {
-  return split_in_plane(turned({{0.02, 0.02}, {0.02, -0.02}}, sides));
+  return turned({{0.02, 0.02}, {0.02, 0.007}, {0.02, -0.007}, {0.02, -0.02}}, sides);
 }
 
 TriangleMesh chamfered_die() {
-  // 45 degrees at the top and the bottom of a block of four sides.
-  return split_in_plane(turned({{0.016, 0.02}, {0.02, 0.016}, {0.02, -0.016}, {0.016, -0.02}}, 4));
+  // 45 degrees between the chamfers and the faces of a block of four sides.
+  const double in = 0.004 * std::numbers::sqrt2;
+  return split_in_plane(
+      turned({{0.02 - in, 0.02}, {0.02, 0.016}, {0.02, -0.016}, {0.02 - in, -0.02}}, 4));
 }
 
 /// A shaft with a shoulder: two cylinders and a flat ring between them.
@@ -94,7 +96,9 @@ std::vector<Case> cases() {
       {"bumpy ball", support::bumpy_sphere(4, 0.03, 0.2, 3), kPacked, "smooth: 100 %"},
       {"shaft", shaft(), kPacked, "smooth: "},
       {"chamfered cylinder", chamfered_cylinder(), kPacked, "smooth: "},
-      {"cylinder of 32 sides", prism(32), kPacked, "smooth: "},
+      {"cylinder of 16 sides", prism(16), kPacked, "smooth: "},
+      {"prism of 16 split sides", split_in_plane(split_in_plane(prism(16))), kEdgePlanes,
+       "faceted: "},
       {"clay ball", shipped("clay_ball.off"), kPacked, "smooth: 100 %"},
       {"tin can", shipped("tin_can.off"), kPacked, "smooth: 75 %"},
       {"drum", shipped("trampoline.off"), kEdgePlanes, "faceted: 100 % of the area is flat"},
@@ -296,7 +300,8 @@ std::vector<Known> known_solids() {
           {"cylinder of 32 sides", prism(32), barrel},
           {"nut of 6 sides", prism(6), side_of(6)},
           {"nut of 10 sides", prism(10), side_of(10)},
-          {"fine die", prism(4), side_of(4)},
+          {"nut of 12 sides", prism(12), side_of(12)},
+          {"fine die", split_in_plane(prism(4)), side_of(4)},
           {"block with rounded edges", rounded_block(0.02, 0.002, 4, 0.03), rounded}};
 }
 
