@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "mesh/surface_turns.h"
+#include "surface_turns.h"
 
 namespace thimble::render {
 namespace {

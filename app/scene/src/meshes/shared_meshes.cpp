@@ -115,7 +115,7 @@ struct SharedMeshes::Held {
   std::mutex mutex;
   MeshCache<MeshKey, ObjectMesh> files;
   MeshCache<const ObjectMesh*, render::ChosenTracker> trackers;  // of `files`
-  std::unordered_multimap<std::uint64_t, MeshPointer> shapes;  // by `hash_of`
+  std::unordered_multimap<std::uint64_t, MeshPointer> shapes;    // by `hash_of`
   MeshCache<std::vector<MeshPointer>, render::TriangleMesh> joined;
   MeshCache<std::pair<MeshPointer, render::ContactChoice>, render::StillSurface> surfaces;
   MeshCache<std::pair<std::vector<HandWaypoint>, NamedPointers>, HandRoute> routes;

@@ -16,10 +16,10 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/surface_turns.h"
 #include "support/meshes/made_solids.h"
 #include "support/meshes/shapes.h"
 #include "support/random.h"
+#include "surface_turns.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/render/mesh/mesh_file.h"
 

@@ -1,4 +1,4 @@
-#include "mesh/surface_turns.h"
+#include "surface_turns.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
