@@ -58,7 +58,8 @@ class TrackerOfScene : public ::testing::Test {
 
   driver::Result<Scene> read(const std::string& objects, const std::string& more = "") const {
     std::ofstream(folder_ / "scene.yaml")
-        << "name: chosen\narm: vintage_phantom\nduration: 1\nobjects:\n"
+        << "name: chosen\narm: " << THIMBLE_SOURCE_DIR
+        << "/app/arms/vintage_phantom.yaml\nduration: 1\nobjects:\n"
         << objects << "hand:\n  path:\n    - {t: 0, at: [0, 0, 0.05]}\n"
         << more;
     return load_scene(folder_ / "scene.yaml");
