@@ -253,6 +253,10 @@ ExitCode run_one(RunContext& context, session::Session& session,
   for (const std::string& choice : session.setup().quality_choices()) {
     report("{}: {}\n", options.quality, choice);
   }
+  for (const std::string& choice :
+       session.setup().objects().tracker_notes(session.setup().scene())) {
+    report("tracker: {}\n", choice);
+  }
   print_lines(session.warnings());
   for (const std::string& warning : stability::stability_warnings(session.scene())) {
     scene::logger().warn("{} See `thimble tune`.", warning);

@@ -69,6 +69,8 @@ int tune_scene(const TuneCommand& command) {
   if (!objects) return report_error(objects.error(), kExitBadInput);
   for (const std::string& note : (*objects)->notes())
     scene::print_format("Note      %s\n", note.c_str());
+  for (const std::string& choice : (*objects)->tracker_notes(*scene))
+    scene::print_format("Tracker   %s\n", choice.c_str());
   stability::TuneOptions options{.period_spread = 1e-6 * command.spread_us};
   if (command.measure > 0) {
     options.period_spread = measured_spread(scene->rate, command.measure);

@@ -332,6 +332,14 @@ void bind_run(py::module_& core) {
                              })
       .def_property_readonly("stride",
                              [](const PythonRun& held) { return held.run->session().stride(); })
+      .def_property_readonly("trackers",
+                             [](const PythonRun& held) {
+                               std::map<std::string, std::pair<std::string, std::string>> trackers;
+                               for (const auto& one : held.run->session().trackers()) {
+                                 trackers[one.object] = {one.tracker, one.reason};
+                               }
+                               return trackers;
+                             })
       .def_property_readonly("objects", [](const PythonRun& held) {
         std::vector<std::string> names;
         for (const auto& object : held.run->session().scene().objects) names.push_back(object.name);

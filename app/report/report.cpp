@@ -56,6 +56,13 @@ Json to_json(const session::RunFigures& report) {
                      {"interruptions", run.interruptions()}, {"time_s", run.contact_time()},
                      {"depth_max_m", run.depth_max()},       {"hops_max", run.hops_max()}};
   json["contact"]["inside_at_start"] = report.inside_at_start;
+  json["contact"]["trackers"] = Json::array();
+  for (const session::RunFigures::Tracker& one : report.trackers) {
+    json["contact"]["trackers"].push_back({{"object", one.object},
+                                           {"tracker", one.tracker},
+                                           {"chosen", one.chosen},
+                                           {"reason", one.reason}});
+  }
   json["force_N"] = {
       {"max", run.force_max()}, {"rms_in_contact", run.force_rms()}, {"limit", report.force_limit}};
   json["energy_to_hand_J"] = {{"total", run.energy_to_hand()}, {"max", run.energy_to_hand_max()}};

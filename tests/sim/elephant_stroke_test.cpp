@@ -39,7 +39,8 @@ class ElephantStroke : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     if (!support::have_meshes()) return;
-    auto session = support::open_elephant();
+    // Flat triangles, as the geometry of the checks.
+    auto session = support::open_elephant_text(support::elephant_text("tracker: edge_planes"));
     ASSERT_TRUE(session);
     ASSERT_EQ(session->run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
     session_ = session.release();

@@ -30,6 +30,11 @@ class RunBase:
         return self._run.objects
 
     @property
+    def trackers(self) -> dict[str, tuple[str, str]]:
+        """Tracker of each object that is a mesh in memory, and why it was chosen; "" if the scene names it."""
+        return dict(self._run.trackers)
+
+    @property
     def info(self) -> dict[str, Any]:
         """Description of the run, as in a recording: scene, arm, device, clock, program, rate [Hz], seed ..."""
         return self._run.info()
@@ -66,6 +71,7 @@ class FinishedRun:
 
     def __init__(self, run: Union[_core.Run, "FinishedRun", "ArmView"]) -> None:
         self.objects: list[str] = list(run.objects)
+        self.trackers: dict[str, tuple[str, str]] = dict(run.trackers)
         self.end: Optional[str] = run.end
         self.stride: int = run.stride
         self._info = run.info()

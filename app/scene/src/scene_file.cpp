@@ -43,12 +43,17 @@ constexpr double kRateMax = 1e5;                      // Hz
 constexpr double kStiffnessMargin =
     0.5;  // of the stable stiffness [chosen: hands differ by this factor]
 
-render::ContactChoice read_contact(YamlMap map) {
+/// Reads the settings of contact. `named`: whether a tracker is named, not "auto".
+render::ContactChoice read_contact(YamlMap map, bool& named) {
   render::ContactChoice choice;
   const auto choose = [&map](std::string_view key, std::span<const std::string_view> names) {
     return map.optional_choice(key, 0, {names.begin(), names.end()});
   };
-  choice.tracker = static_cast<render::TrackerChoice>(choose("tracker", render::kTrackerNames));
+  std::vector<std::string_view> trackers{"auto"};
+  trackers.insert(trackers.end(), render::kTrackerNames.begin(), render::kTrackerNames.end());
+  const auto tracker = choose("tracker", trackers);
+  named = tracker > 0;
+  if (named) choice.tracker = static_cast<render::TrackerChoice>(tracker - 1);
   if (map.has("search")) {
     choice.search = static_cast<render::SearchChoice>(choose("search", render::kSearchNames));
   }
@@ -122,8 +127,7 @@ void read_sheets(YamlMap& map, SceneObject& object) {
     return;
   }
   if (!object.sheet_thickness) return;
-  const bool named = map.has("contact") && map.require_map("contact").has("tracker");
-  if (named && object.contact.tracker != render::TrackerChoice::kGodObject) {
+  if (object.tracker_named && object.contact.tracker != render::TrackerChoice::kGodObject) {
     map.reject(
         "open",
         "needs the tracker \"god_object\", the only one that cannot pass through a sheet; remove "
@@ -174,14 +178,13 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   object.damping = map.optional_number("damping", 0, "N s/m", 0, kDampingMax);
   object.paged = !object.mesh_file.empty() && render::is_page_file(object.mesh_file);
   if (!object.shape && map.has("contact")) {
-    YamlMap contact = map.require_map("contact");
-    object.tracker_named = contact.has("tracker");
-    object.contact = read_contact(std::move(contact));
+    object.contact = read_contact(map.require_map("contact"), object.tracker_named);
   }
   if (object.paged) {
     const render::ContactChoice& c = object.contact;
-    const bool uses_defaults = c.tracker == render::TrackerChoice::kPacked && !c.search &&
-                               !c.blending && !c.normals && !c.curved_depth && !c.crease_angle;
+    const bool uses_defaults =
+        (!object.tracker_named || c.tracker == render::TrackerChoice::kPacked) && !c.search &&
+        !c.blending && !c.normals && !c.curved_depth && !c.crease_angle;
     if (map.has("contact") && !uses_defaults) {
       map.reject(
           "contact",

@@ -14,6 +14,7 @@
 #include "disk_paging/paged_surface.h"
 #include "meshes/mesh_join.h"
 #include "meshes/object_mesh.h"
+#include "meshes/object_tracker.h"
 #include "still_surface.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/mesh/check_mesh.h"
@@ -41,14 +42,6 @@ std::string remedy_for(const SceneObject& object, const MeshPointer& mesh_W) {
                          "prints which one is needed.";
 }
 
-/// Returns the surface settings of an object.
-render::SurfaceChoice surface_of(const SceneObject& object) {
-  return {.spring = {.stiffness = object.stiffness, .damping = object.damping},
-          .effects = object.effects,
-          .dent = object.body.dent,
-          .shape = object.body.shape};
-}
-
 /// Returns the error for an object that contact or a body rejects.
 driver::Error refused(const SceneObject& object, const MeshPointer& mesh_W,
                       const driver::Error& error) {
@@ -57,20 +50,22 @@ driver::Error refused(const SceneObject& object, const MeshPointer& mesh_W,
 
 /// Builds the force law of an object in memory that does not move. If the base points of its
 /// surface move, it has its own mesh and search.
-Touched build_still(const SceneObject& object, const MeshPointer& mesh_W, SharedMeshes& meshes) {
+Touched build_still(const SceneObject& object, const render::ContactChoice& contact,
+                    const MeshPointer& mesh_W, SharedMeshes& meshes) {
   const render::SurfaceChoice surface = surface_of(object);
   if (object.shape) {
-    return render::build_primitive_touch(object.shape->shape_W, surface, object.contact.tip_radius);
+    return render::build_primitive_touch(object.shape->shape_W, surface, contact.tip_radius);
   }
-  if (surface.shape.named()) return render::build_object_touch(*mesh_W, object.contact, surface);
-  const auto still = meshes.surface(mesh_W, object.contact);
+  if (surface.shape.named()) return render::build_object_touch(*mesh_W, contact, surface);
+  const auto still = meshes.surface(mesh_W, contact);
   if (!still) return still.error();
-  return render::build_object_touch(**still, *mesh_W, object.contact, surface);
+  return render::build_object_touch(**still, *mesh_W, contact, surface);
 }
 
 /// Builds the force law of one object that is touched by one arm.
-Touched build_one(const SceneObject& object, const MeshPointer& mesh_W, SharedMeshes& meshes,
-                  double reach, std::vector<std::shared_ptr<render::PagedSurface>>& pages) {
+Touched build_one(const SceneObject& object, const render::ContactChoice& contact,
+                  const MeshPointer& mesh_W, SharedMeshes& meshes, double reach,
+                  std::vector<std::shared_ptr<render::PagedSurface>>& pages) {
   if (object.build_field) return object.build_field();
   if (object.paged) {
     render::PagingSettings paging;
@@ -87,7 +82,7 @@ Touched build_one(const SceneObject& object, const MeshPointer& mesh_W, SharedMe
     if (!judged) return judged.error();
     return render::build_paged_touch(pages.back(), place, surface_of(object));
   }
-  auto touch = build_still(object, mesh_W, meshes);
+  auto touch = build_still(object, contact, mesh_W, meshes);
   if (touch && object.body.motion) {
     touch = render::move_object(std::move(touch).value(), *mesh_W, *object.body.motion,
                                 object.coupling);
@@ -99,6 +94,7 @@ Touched build_one(const SceneObject& object, const MeshPointer& mesh_W, SharedMe
 /// Builds the force law of one object for each of several arms. Each arm has its own contact with
 /// the object, and all share the moving body.
 driver::Result<render::SharedObject> build_shared(const SceneObject& object,
+                                                  const render::ContactChoice& contact,
                                                   const MeshPointer& mesh_W, SharedMeshes& meshes,
                                                   std::size_t arms) {
   render::SharedObject shared;
@@ -114,7 +110,7 @@ driver::Result<render::SharedObject> build_shared(const SceneObject& object,
       shared.touches.push_back(object.build_field());
       continue;
     }
-    auto touch = build_still(object, mesh_W, meshes);
+    auto touch = build_still(object, contact, mesh_W, meshes);
     if (!touch) return refused(object, mesh_W, touch.error());
     shared.touches.push_back(std::move(touch).value());
   }
@@ -132,7 +128,8 @@ driver::Result<render::SharedObject> build_shared(const SceneObject& object,
 struct SceneObjects::Meshes {
   explicit Meshes(std::shared_ptr<SharedMeshes> shared) : store(std::move(shared)) {}
 
-  driver::Result<void> load(const Scene& scene, std::vector<std::string>& notes);
+  driver::Result<void> load(const Scene& scene, std::vector<std::string>& notes,
+                            std::vector<ObjectTracker>& trackers);
   const MeshPointer& of(std::size_t object);
   void join();
 
@@ -150,8 +147,8 @@ struct SceneObjects::Meshes {
 
 /// Reads the mesh files of all objects and places them in the world (m). A shape keeps none; the
 /// mesh of a field or of a page file is empty.
-driver::Result<void> SceneObjects::Meshes::load(const Scene& scene,
-                                                std::vector<std::string>& notes) {
+driver::Result<void> SceneObjects::Meshes::load(const Scene& scene, std::vector<std::string>& notes,
+                                                std::vector<ObjectTracker>& trackers) {
   const double reach = reach_of(scene);
   const auto empty = std::make_shared<const render::TriangleMesh>();
   own_W.reserve(scene.objects.size());
@@ -172,6 +169,9 @@ driver::Result<void> SceneObjects::Meshes::load(const Scene& scene,
     if (!judged) return judged.error();
     if (!judged->empty()) notes.push_back(*judged);
     notes.insert(notes.end(), mesh.notes.begin(), mesh.notes.end());
+    ObjectTracker tracker = tracker_of(object, *loaded, *store);
+    tracker.object = own_W.size();
+    trackers.push_back(std::move(tracker));
     own_W.emplace_back(*loaded, &mesh.mesh_W);
   }
   return {};
@@ -222,7 +222,10 @@ driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(
   const auto held = meshes ? meshes : std::make_shared<SharedMeshes>();
   std::unique_ptr<SceneObjects> objects(new SceneObjects);
   objects->meshes_ = std::make_unique<Meshes>(held);
-  if (auto loaded = objects->meshes_->load(scene, objects->notes_); !loaded) return loaded.error();
+  if (auto loaded = objects->meshes_->load(scene, objects->notes_, objects->trackers_); !loaded) {
+    return loaded.error();
+  }
+  auto tracker = objects->trackers_.begin();  // of the next object that has one
   const std::size_t arms = scene.arms.size();
   const double reach = reach_of(scene);
   std::vector<std::vector<std::unique_ptr<render::ObjectTouch>>> touches(arms);
@@ -231,13 +234,15 @@ driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(
     // Only a shape that moves needs its mesh, for its mass.
     const bool needs_mesh = !object.shape || object.body.motion;
     const MeshPointer mesh_W = needs_mesh ? objects->shared_mesh_W(i) : nullptr;
+    const bool has_tracker = tracker != objects->trackers_.end() && tracker->object == i;
+    const render::ContactChoice& contact = has_tracker ? (tracker++)->contact : object.contact;
     if (arms == 1) {
-      auto touch = build_one(object, mesh_W, *held, reach, objects->pages_);
+      auto touch = build_one(object, contact, mesh_W, *held, reach, objects->pages_);
       if (!touch) return touch.error();
       touches[0].push_back(std::move(touch).value());
       continue;
     }
-    auto shared = build_shared(object, mesh_W, *held, arms);
+    auto shared = build_shared(object, contact, mesh_W, *held, arms);
     if (!shared) return shared.error();
     for (std::size_t arm = 0; arm < arms; ++arm) {
       touches[arm].push_back(std::move(shared->touches[arm]));
@@ -259,6 +264,10 @@ driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(
     objects->triangles_ += static_cast<std::size_t>(pages->triangle_count());
   }
   return objects;
+}
+
+std::vector<std::string> SceneObjects::tracker_notes(const Scene& scene) const {
+  return describe_trackers(scene, trackers_);
 }
 
 render::TriangleMesh SceneObjects::mesh_now(int object) const {

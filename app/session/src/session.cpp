@@ -339,6 +339,10 @@ RunFigures Session::figures(const driver::RealTimeGrant& grant, std::size_t arm)
   return figures;
 }
 
+std::vector<RunFigures::Tracker> Session::trackers() const {
+  return trackers_of(*parts_->setup);
+}
+
 std::optional<int> Session::find_object(const std::string& name) const {
   const auto& objects = scene().objects;
   const auto found = std::find_if(objects.begin(), objects.end(),

@@ -14,6 +14,7 @@
 #include "meshes/mesh_join.h"
 #include "meshes/object_mesh.h"
 #include "still_surface.h"
+#include "thimble/render/choose_tracker.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::scene {
@@ -72,8 +73,16 @@ class MeshCache {
         .second;
   }
   std::size_t size() const { return entries_.size(); }
+  bool holds(const Value* value) const {
+    return std::any_of(entries_.begin(), entries_.end(),
+                       [value](const auto& entry) { return entry.second.get() == value; });
+  }
   void drop_unused() {
     drop_if([](const std::shared_ptr<const Value>& value) { return value.use_count() == 1; });
+  }
+  template <class Unused>
+  void drop_if_key(const Unused& unused) {
+    std::erase_if(entries_, [&](const auto& entry) { return unused(entry.first); });
   }
   template <class Unused>
   void drop_if(const Unused& unused) {
@@ -105,7 +114,8 @@ bool same(const render::TriangleMesh& a, const render::TriangleMesh& b) {
 struct SharedMeshes::Held {
   std::mutex mutex;
   MeshCache<MeshKey, ObjectMesh> files;
-  std::unordered_multimap<std::uint64_t, MeshPointer> shapes;  // by `hash_of`
+  MeshCache<const ObjectMesh*, render::ChosenTracker> trackers;  // of `files`
+  std::unordered_multimap<std::uint64_t, MeshPointer> shapes;    // by `hash_of`
   MeshCache<std::vector<MeshPointer>, render::TriangleMesh> joined;
   MeshCache<std::pair<MeshPointer, render::ContactChoice>, render::StillSurface> surfaces;
   MeshCache<std::pair<std::vector<HandWaypoint>, NamedPointers>, HandRoute> routes;
@@ -131,6 +141,7 @@ void SharedMeshes::drop_unused() {
   held_->surfaces.drop_if([](const auto& still) { return still->search.use_count() == 1; });
   held_->joined.drop_unused();
   held_->files.drop_unused();
+  held_->trackers.drop_if_key([this](const ObjectMesh* mesh) { return !held_->files.holds(mesh); });
   std::erase_if(held_->shapes, [](const auto& shape) { return shape.second.use_count() == 1; });
 }
 
@@ -142,6 +153,13 @@ driver::Result<std::shared_ptr<const ObjectMesh>> SharedMeshes::object_mesh(
   auto loaded = load_object_mesh(object);
   if (!loaded) return loaded.error();
   return held_->files.keep(std::move(key), std::move(loaded).value());
+}
+
+std::shared_ptr<const render::ChosenTracker> SharedMeshes::tracker(
+    const std::shared_ptr<const ObjectMesh>& mesh) {
+  const std::scoped_lock lock(held_->mutex);
+  if (auto found = held_->trackers.find(mesh.get())) return found;
+  return held_->trackers.keep(mesh.get(), render::choose_tracker(mesh->mesh_W));
 }
 
 MeshPointer SharedMeshes::mesh_like(const render::TriangleMesh& mesh_W) {

@@ -28,9 +28,9 @@ constexpr double kReferenceRate = 4;
 
 std::string draft(SceneObject& object) {
   std::string text;
-  if (leaves_surface_open(object) && !object.tracker_named &&
-      object.contact.tracker != TrackerChoice::kEdgePlanes) {
+  if (leaves_surface_open(object) && !object.tracker_named) {
     object.contact.tracker = TrackerChoice::kEdgePlanes;
+    object.tracker_named = true;
     text += " flat triangles with edge planes, the cheapest contact;";
   }
   if (object.body.dent && !object.body.dent->whole && object.body.dent->rings > kDraftRings) {

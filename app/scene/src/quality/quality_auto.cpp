@@ -83,6 +83,7 @@ std::vector<Candidate> contacts_for(const SceneObject& object, double turn) {
     const double ns = turn > 0 ? interpolate(turn, a, b, a.ns, b.ns) : points[end - 1].ns;
     all.push_back({error, ns, words_of(way), [&way](SceneObject& chosen) {
                      chosen.contact.tracker = way.tracker;
+                     chosen.tracker_named = true;
                      chosen.contact.blending = way.blending;
                      chosen.contact.curved_depth = way.curved_depth;
                    }});

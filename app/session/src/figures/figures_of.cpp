@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 
 #include "figures/lost_contacts.h"
 
@@ -13,6 +14,19 @@ namespace {
 constexpr std::size_t kNamesMax = 20;  // names of objects in a sentence [chosen]
 
 }  // namespace
+
+std::vector<RunFigures::Tracker> trackers_of(const Setup& setup) {
+  std::vector<RunFigures::Tracker> trackers;
+  for (const scene::ObjectTracker& one : setup.objects().trackers()) {
+    if (one.contact.tip_radius > 0) continue;
+    trackers.push_back({.object = setup.scene().objects[one.object].name,
+                        .tracker = std::string(
+                            render::kTrackerNames[static_cast<std::size_t>(one.contact.tracker)]),
+                        .chosen = one.chosen,
+                        .reason = one.reason});
+  }
+  return trackers;
+}
 
 RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& records,
                       driver::ServoEnd end, const driver::RealTimeGrant& grant) {
@@ -35,6 +49,7 @@ RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& rec
   figures.force_limit = setup.arm_file(arm).limits.force_max;
   figures.inside_at_start = setup.inside_at_start(arm);
   figures.tip_radius = setup.scene().tip_radius;
+  figures.trackers = trackers_of(setup);
   figures.triangles = setup.objects().triangles();
   figures.paging = setup.objects().paging();
   figures.wire = device.wire_counters();

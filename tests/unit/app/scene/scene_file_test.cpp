@@ -79,11 +79,12 @@ TEST(SceneFile, ReadsContactOrListsTheChoices) {
   EXPECT_EQ(scene->objects[0].contact.normals, render::NormalWeights::kRound);
   EXPECT_EQ(scene->objects[0].contact.curved_depth, true);
   EXPECT_NEAR(scene->objects[0].contact.crease_angle.value(), 1.0471975511965976, 1e-12);
-  EXPECT_NE(mistake("  - {name: b, mesh: cgal:ball.off, stiffness: 1, contact: {tracker: magic}}\n",
-                    kWait)
-                .find("tracker: expected edge_planes, normal_projection, offset, god_object or "
-                      "compact, found \"magic\""),
-            std::string::npos);
+  EXPECT_NE(
+      mistake("  - {name: b, mesh: cgal:ball.off, stiffness: 1, contact: {tracker: magic}}\n",
+              kWait)
+          .find("tracker: expected auto, edge_planes, normal_projection, offset, god_object or "
+                "compact, found \"magic\""),
+      std::string::npos);
   EXPECT_NE(
       mistake("  - {name: b, mesh: cgal:ball.off, stiffness: 1, contact: {normals: mean}}\n", kWait)
           .find("normals: expected angle, round or fitted, found \"mean\""),

@@ -54,7 +54,8 @@ class SharedMeshesTest : public ::testing::Test {
     std::ofstream(folder / "scene.yaml") << "name: ball\narm: vintage_phantom\nduration: 1\n"
                                             "objects:\n"
                                             "  - {name: ball, mesh: ball.off, scale: 1, "
-                                            "position: [0, 0, -0.03], stiffness: 500, damping: 1}\n"
+                                            "position: [0, 0, -0.03], stiffness: 500, damping: 1, "
+                                            "contact: {tracker: edge_planes}}\n"
                                             "hand:\n  path:\n    - {t: 0, at: [0, 0, 0.02]}\n";
     return folder / "scene.yaml";
   }
@@ -189,6 +190,7 @@ TEST_F(SharedMeshesTest, AreSharedByTheArmsOfAScene) {
     ball.mesh_file = mesh;
     ball.scale = 1;
     ball.stiffness = 500;
+    ball.tracker_named = true;  // edge planes, whose mesh can be compared
     read.objects[0] = ball;
   };
   const auto opened = Session::open("two_hands", {.adjust = with_ball, .several_arms = true});

@@ -31,10 +31,11 @@ THIMBLE_EXPORT std::optional<Quality> quality_named(std::string_view name);
 THIMBLE_EXPORT double rate_factor_of(Quality quality);
 
 /// Applies a quality to a scene. Returns one sentence per choice, with the reason. `kNormal`
-/// changes nothing. Values that the scene sets itself (a blending, a tracker) are kept. `budget`:
-/// time per tick for all objects on the machine of the stored diagrams (quality_table.h), ns; used
-/// by kAuto only. If empty, kAuto chooses the lowest cost with errors below perception. The loop
-/// rate is chosen when the scene is read. Real-time: never from the servo thread.
+/// changes nothing. Values that the scene sets itself (a blending, a tracker other than "auto") are
+/// kept. `budget`: time per tick for all objects on the machine of the stored diagrams
+/// (quality_table.h), ns; used by kAuto only. If empty, kAuto chooses the lowest cost with errors
+/// below perception. The loop rate is chosen when the scene is read. Real-time: never from the
+/// servo thread.
 THIMBLE_EXPORT std::vector<std::string> apply_quality(Quality quality, Scene& scene,
                                                       std::optional<double> budget = {});
 

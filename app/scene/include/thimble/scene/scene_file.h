@@ -62,9 +62,11 @@ struct SceneObject {
   Eigen::Vector3d p_WO{0, 0, 0};
   double stiffness = 0;  ///< Stiffness, N/m.
   double damping = 0;    ///< Damping, N s/m.
-  /// How the surface is found, tracked and rendered.
+  /// How the surface is found, tracked and rendered. If `tracker_named` is false and `tracker` is
+  /// kEdgePlanes, `SceneObjects::build` chooses the tracker from the mesh (render::choose_tracker).
   render::ContactChoice contact;
-  bool tracker_named = false;  ///< True if the scene names a tracker.
+  /// True if the scene (other than by "auto") or a quality names the tracker.
+  bool tracker_named = false;
   /// Effects on the object, in the order of execution.
   std::vector<render::EffectPlan> effects;
   SceneBody body;  ///< Material.

@@ -9,6 +9,7 @@
 
 #include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
+#include "thimble/render/contact_choice.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/render/page/paging_counters.h"
 #include "thimble/render/scene_touch.h"
@@ -27,6 +28,16 @@ class SharedMeshes;
 struct MeshPlace {
   std::size_t vertex = 0;    ///< Index of the first vertex.
   std::size_t triangle = 0;  ///< Index of the first triangle.
+};
+
+/// Tracker of an object that is a mesh in memory.
+struct ObjectTracker {
+  std::size_t object = 0;         ///< Index of the object in the scene.
+  render::ContactChoice contact;  ///< Contact settings with which the object is touched.
+  /// True if the tracker was chosen; false if it was named, or if the tip has a radius and uses
+  /// none.
+  bool chosen = false;
+  std::string reason;  ///< Reason of the choice in a few words; empty if `chosen` is false.
 };
 
 /// Objects of a scene, loaded and ready to be touched.
@@ -76,6 +87,12 @@ class THIMBLE_EXPORT SceneObjects {
   std::size_t triangles() const { return triangles_; }
   /// Returns notes on mesh repairs, omissions and assumptions, one sentence each.
   const std::vector<std::string>& notes() const { return notes_; }
+  /// Returns the trackers of all objects that are meshes in memory, in the order of the scene.
+  const std::vector<ObjectTracker>& trackers() const { return trackers_; }
+  /// Returns a line for each group of objects with the same chosen tracker and reason, such as
+  /// "elephant: compact (smooth: ...)". `scene` is that of `build`. Objects that name their tracker
+  /// are omitted. Real-time: never from the servo thread.
+  std::vector<std::string> tracker_notes(const Scene& scene) const;
   /// Returns the indices of the objects that move.
   std::span<const std::size_t> moving() const { return moving_; }
 
@@ -98,6 +115,7 @@ class THIMBLE_EXPORT SceneObjects {
   std::vector<std::size_t> moving_;
   std::size_t triangles_ = 0;
   std::vector<std::string> notes_;
+  std::vector<ObjectTracker> trackers_;
 };
 
 }  // namespace thimble::scene

@@ -12,8 +12,9 @@
 #include "thimble/scene/hand_route.h"
 
 namespace thimble::render {
+struct ChosenTracker;
 struct StillSurface;
-}
+}  // namespace thimble::render
 
 namespace thimble::scene {
 
@@ -47,6 +48,10 @@ class THIMBLE_EXPORT SharedMeshes {
 
   /// Returns the mesh of an object with a mesh file. The error is that of load_object_mesh.
   driver::Result<std::shared_ptr<const ObjectMesh>> object_mesh(const SceneObject& object);
+  /// Returns the tracker that suits a mesh of this store (render::choose_tracker), with no other
+  /// setting than its crease angle.
+  std::shared_ptr<const render::ChosenTracker> tracker(
+      const std::shared_ptr<const ObjectMesh>& mesh);
   /// Returns a shared mesh with the same contents.
   std::shared_ptr<const render::TriangleMesh> mesh_like(const render::TriangleMesh& mesh_W);
   /// Returns several meshes of this store as one, in the given order; a single mesh is returned

@@ -22,6 +22,14 @@ namespace thimble::session {
 
 /// Figures of a run: configuration, statistics and end. Plain data for reports, tables and files.
 struct RunFigures {
+  /// Tracker of an object that is a mesh in memory.
+  struct Tracker {
+    std::string object;   ///< Name of the object.
+    std::string tracker;  ///< Name of the tracker, as in a scene.
+    bool chosen = false;  ///< True if the tracker was chosen, false if it was named.
+    std::string reason;   ///< Reason of the choice; empty if the tracker was named.
+  };
+
   std::string scene;          ///< Name of the scene.
   std::string object;         ///< Names of all objects of the scene.
   std::string arm;            ///< Name of the arm.
@@ -34,8 +42,9 @@ struct RunFigures {
   double force_limit = 0;                    ///< Force limit of the safety gate, N.
   std::vector<std::string> inside_at_start;  ///< Names of the objects in which the tip started.
   double tip_radius = 0;                     ///< Of a tip that is a ball, m; 0: a point.
-  std::size_t triangles = 0;  ///< Number of touchable triangles, in memory and on disk.
-  RunStatistics statistics;   ///< Statistics of the ticks.
+  std::vector<Tracker> trackers;  ///< Trackers of meshes in memory; none under a tip with a radius.
+  std::size_t triangles = 0;      ///< Number of touchable triangles, in memory and on disk.
+  RunStatistics statistics;       ///< Statistics of the ticks.
   /// Intervals inside an object without a force; found after the run.
   std::uint64_t lost_contacts = 0;
   double current_at_exit = 0;  ///< Largest motor current after the end, A; simulated arm only.

@@ -296,6 +296,9 @@ class THIMBLE_EXPORT Session {
   /// servo thread.
   RecordingInfo recording_info(std::size_t arm = 0) const;
 
+  /// Returns the trackers of the objects that are meshes in memory; none under a tip with a radius.
+  std::vector<RunFigures::Tracker> trackers() const;
+
   // Access for Thimble's own code (app/session/src).
 
   /// Returns the configuration of the run.
