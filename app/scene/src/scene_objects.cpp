@@ -46,7 +46,9 @@ render::SurfaceChoice surface_of(const SceneObject& object) {
   return {.spring = {.stiffness = object.stiffness, .damping = object.damping},
           .effects = object.effects,
           .dent = object.body.dent,
-          .shape = object.body.shape};
+          .shape = object.body.shape,
+          .stiffness_map = object.stiffness_map,
+          .friction_map = object.friction_map};
 }
 
 /// Returns the error for an object that contact or a body rejects.
@@ -58,7 +60,13 @@ driver::Error refused(const SceneObject& object, const MeshPointer& mesh_W,
 /// Builds the force law of an object in memory that does not move. If the base points of its
 /// surface move, it has its own mesh and search.
 Touched build_still(const SceneObject& object, const MeshPointer& mesh_W, SharedMeshes& meshes) {
-  const render::SurfaceChoice surface = surface_of(object);
+  render::SurfaceChoice surface = surface_of(object);
+  if (object.needs_maps() && !object.shape) {
+    // Loaded with the mesh already.
+    const auto loaded = meshes.object_mesh(object);
+    if (!loaded) return loaded.error();
+    surface.maps = (*loaded)->maps;
+  }
   if (object.shape) {
     return render::build_primitive_touch(object.shape->shape_W, surface, object.contact.tip_radius);
   }

@@ -12,6 +12,7 @@
 #include "thimble/render/body/dent_settings.h"
 #include "thimble/render/body/motion_choice.h"
 #include "thimble/render/body/shape_choice.h"
+#include "thimble/render/build_object_touch.h"
 #include "thimble/render/build_primitive_touch.h"
 #include "thimble/render/contact_choice.h"
 #include "thimble/render/effect/effect_table.h"
@@ -58,8 +59,12 @@ struct SceneObject {
   Eigen::Matrix3d R_WO = Eigen::Matrix3d::Identity();  ///< Rotation of the mesh in the world.
   /// Centre of the bounding box of the rotated mesh, in the world, m.
   Eigen::Vector3d p_WO{0, 0, 0};
-  double stiffness = 0;  ///< Stiffness, N/m.
+  double stiffness = 0;  ///< Stiffness, N/m; with a `stiffness_map` the largest one.
   double damping = 0;    ///< Damping, N s/m.
+  /// Factor of `stiffness` over the surface, from 0 to 1.
+  std::optional<render::MapChoice> stiffness_map;
+  /// Factor of the coefficients of friction over the surface.
+  std::optional<render::MapChoice> friction_map;
   /// How the surface is found, tracked and rendered.
   render::ContactChoice contact;
   bool tracker_named = false;  ///< True if the scene names a tracker.
@@ -68,6 +73,10 @@ struct SceneObject {
   SceneBody body;  ///< Material.
   /// Bounds of the surface response, used if the object moves.
   render::BodyCoupling coupling;
+
+  /// Returns whether texture coordinates or vertex colours of the mesh file are used. Real-time:
+  /// never from the servo thread.
+  bool needs_maps() const;
 };
 
 /// Place of one of several arms in a scene: a rotation about the vertical, then a translation.
