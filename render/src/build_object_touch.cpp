@@ -15,13 +15,13 @@
 #include "shape_object.h"
 #include "still_surface.h"
 #include "surface/map/surface_maps.h"
-#include "surface/map/use_maps.h"
 #include "track/blended.h"
 #include "track/curved_depth.h"
 #include "track/edge_blending.h"
 #include "track/god_object.h"
 #include "track/mesh_contact.h"
 #include "tracker_table.h"
+#include "use_maps.h"
 #include "world/parts_touch.h"
 
 namespace thimble::render {

@@ -10,7 +10,7 @@
 
 #include "mesh/repair/orient_mesh.h"
 #include "mesh/repair/touching_parts.h"
-#include "surface/map/surface_maps.h"
+#include "mesh_maps.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/repair_mesh.h"
 #include "thimble/render/mesh/thicken_sheets.h"

@@ -1,14 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
-
-#include "thimble/driver/export.h"
-#include "thimble/render/mesh/mesh_file.h"
-#include "thimble/render/mesh/triangle_mesh.h"
 
 namespace thimble::render {
 
@@ -32,17 +28,17 @@ struct SurfaceMaps {
   std::vector<Eigen::Vector3d> middles;
 };
 
-/// Returns the maps of a touched mesh that was made from another one by a repair. `source_W` are
-/// the vertices of the other mesh at their place in the world (m), `triangles` and `attributes` as
-/// in its file. `origins` has the number of the source triangle of each touched one (RepairedMesh),
-/// or -1 for none. Real-time: never from the servo thread.
-THIMBLE_EXPORT SurfaceMaps surface_maps_of(std::span<const Eigen::Vector3d> source_W,
-                                           std::span<const std::array<std::int32_t, 3>> triangles,
-                                           const MeshAttributes& attributes,
-                                           std::span<const std::int32_t> origins);
-
 /// Returns the maps of a part of a mesh, which has these triangles. Real-time: never from the servo
 /// thread.
-SurfaceMaps part_of(const SurfaceMaps& maps, std::span<const std::int32_t> triangles);
+inline SurfaceMaps part_of(const SurfaceMaps& maps, std::span<const std::int32_t> triangles) {
+  SurfaceMaps part;
+  for (const std::int32_t number : triangles) {
+    const auto t = static_cast<std::size_t>(number);
+    if (!maps.uv.empty()) part.uv.push_back(maps.uv[t]);
+    if (!maps.colours.empty()) part.colours.push_back(maps.colours[t]);
+    part.middles.push_back(maps.middles[t]);
+  }
+  return part;
+}
 
 }  // namespace thimble::render

@@ -1,9 +1,9 @@
-#include "surface/map/surface_maps.h"
+#include "mesh_maps.h"
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cstddef>
 #include <limits>
+#include <vector>
 
 namespace thimble::render {
 namespace {
@@ -77,17 +77,6 @@ SurfaceMaps surface_maps_of(std::span<const Vector3d> source_W,
     maps.middles.push_back(middle);
   }
   return maps;
-}
-
-SurfaceMaps part_of(const SurfaceMaps& maps, std::span<const std::int32_t> triangles) {
-  SurfaceMaps part;
-  for (const std::int32_t number : triangles) {
-    const auto t = static_cast<std::size_t>(number);
-    if (!maps.uv.empty()) part.uv.push_back(maps.uv[t]);
-    if (!maps.colours.empty()) part.colours.push_back(maps.colours[t]);
-    part.middles.push_back(maps.middles[t]);
-  }
-  return part;
 }
 
 }  // namespace thimble::render

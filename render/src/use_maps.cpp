@@ -1,4 +1,4 @@
-#include "surface/map/use_maps.h"
+#include "use_maps.h"
 
 #include <fmt/core.h>
 
@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh_maps.h"
 #include "surface/map/mapped_friction.h"
 #include "surface/map/mapped_spring.h"
 #include "surface/map/surface_map.h"
