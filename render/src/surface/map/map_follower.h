@@ -43,7 +43,7 @@ class MapFollower {
     const Eigen::Vector3d raw_W = closest.slope_at_tip(found.slope_M);
     const double size = raw_W.norm();
     const bool steep = size > limits.steepest;
-    const Eigen::Vector3d slope_W = steep ? Eigen::Vector3d(limits.steepest / size * raw_W) : raw_W;
+    Eigen::Vector3d slope_W = steep ? Eigen::Vector3d(limits.steepest / size * raw_W) : raw_W;
     // Written so that NaN is no contact.
     if (!touching_ || !(std::abs(felt_.value) <= 1)) {
       touching_ = true;
@@ -56,7 +56,10 @@ class MapFollower {
         start(felt_.value - found.value, p_WT, closest.fall_W, limits);
       } else if (steep) {
         const double felt = felt_.value + (slope_W + felt_.slope_W).dot(p_WT - p_WT_before_) / 2;
-        start(std::clamp(felt, 0.0, 1.0) - found.value, p_WT, closest.fall_W, limits);
+        const double valid = std::clamp(felt, 0.0, 1.0);
+        start(valid - found.value, p_WT, closest.fall_W, limits);
+        // At the end of the range it does not change any more.
+        if (valid != felt) slope_W.setZero();
       } else if (offset_ != 0 &&
                  (along_W_.isZero() || 1.5 * std::abs(offset_) > 2 * limits.ramp * length_)) {
         // It waits for a direction, or the limit has fallen, as under a tip that presses harder.

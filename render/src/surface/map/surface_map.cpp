@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "math/elementary.h"
+
 namespace thimble::render {
 namespace {
 
@@ -29,7 +31,7 @@ struct Stretch {
 Stretch stretch_of(const Eigen::Matrix<double, 2, 3>& J) {
   const Eigen::Matrix2d g = J * J.transpose();
   const double mean = (g(0, 0) + g(1, 1)) / 2;
-  const double apart = std::hypot((g(0, 0) - g(1, 1)) / 2, g(0, 1));
+  const double apart = math::hypot((g(0, 0) - g(1, 1)) / 2, g(0, 1));
   // The product is exact where the difference would be rounding.
   const double area = J.row(0).head<3>().cross(J.row(1).head<3>()).norm();
   const double largest = std::sqrt(mean + apart);
