@@ -14,12 +14,14 @@
 #include "mesh/smooth_normals.h"
 #include "shape_object.h"
 #include "still_surface.h"
+#include "surface/map/surface_maps.h"
 #include "track/blended.h"
 #include "track/curved_depth.h"
 #include "track/edge_blending.h"
 #include "track/god_object.h"
 #include "track/mesh_contact.h"
 #include "tracker_table.h"
+#include "use_maps.h"
 #include "world/parts_touch.h"
 
 namespace thimble::render {
@@ -92,6 +94,11 @@ Built mesh_touch(const StillSurface& still, const ContactChoice& choice,
 
 Built stiff_touch(const StillSurface& still, const ContactChoice& choice,
                   const SurfaceChoice& surface) {
+  if (needs_maps(surface)) {
+    const auto used = use_maps(surface);
+    if (!used) return used.error();
+    return stiff_touch(still, choice, *used);
+  }
   if (choice.tip_radius > 0) {
     return build_surface_touch(
         BallContact(MeshBall(still.triangles, still.search, choice.tip_radius)), surface);
@@ -145,7 +152,11 @@ Built parts_touch(std::vector<MeshPart> parts, const std::shared_ptr<const Conta
   for (MeshPart& part : parts) {
     const auto still = prepare_still_surface(part.mesh, choice);
     if (!still) return still.error();
-    auto touch = stiff_touch(*still, choice, surface);
+    SurfaceChoice own = surface;
+    if (own.maps) {
+      own.maps = std::make_shared<const SurfaceMaps>(part_of(*surface.maps, part.triangles));
+    }
+    auto touch = stiff_touch(*still, choice, own);
     if (!touch) return touch.error();
     built.push_back({std::move(touch).value(), std::move(part.triangles)});
   }
@@ -157,6 +168,7 @@ Built parts_touch(std::vector<MeshPart> parts, const std::shared_ptr<const Conta
 Built build_object_touch(const StillSurface& still, const TriangleMesh& mesh_W,
                          const ContactChoice& choice, const SurfaceChoice& surface) {
   if (auto fits = check_ball(choice, surface); !fits) return fits.error();
+  if (auto fits = check_maps(surface, mesh_W.triangles.size()); !fits) return fits.error();
   if (!surface.dent) {
     auto parts = overlapping_parts(mesh_W);
     if (parts.size() > 1) return parts_touch(std::move(parts), still.mesh, choice, surface);
@@ -167,6 +179,7 @@ Built build_object_touch(const StillSurface& still, const TriangleMesh& mesh_W,
 Built build_object_touch(const TriangleMesh& mesh_W, const ContactChoice& choice,
                          const SurfaceChoice& surface) {
   if (auto fits = check_ball(choice, surface); !fits) return fits.error();
+  if (auto fits = check_maps(surface, mesh_W.triangles.size()); !fits) return fits.error();
   if (surface.shape.named()) {
     if (auto fits = check_profile(choice); !fits) return fits.error();
     return dented(shaped_touch(mesh_W, choice, surface), mesh_W, surface);

@@ -14,19 +14,23 @@
 
 namespace thimble::render {
 
-/// Builds the stages of a surface: its spring comes after stages that change the depth. Real-time:
-/// never from the servo thread.
+/// Builds the stages of a surface: its spring comes after stages that change the depth.
+/// Precondition: the surface needs no maps (use_maps.h). Real-time: never from the servo thread.
 inline StageList stage_list(const SurfaceChoice& surface) {
   std::vector<std::unique_ptr<AnyStage>> stages;
+  const auto spring = [&]() -> std::unique_ptr<AnyStage> {
+    if (surface.spring_stage) return surface.spring_stage();
+    return std::make_unique<AnyStageOf<SpringDamper>>(surface.spring);
+  };
   bool sprung = false;
   for (const EffectPlan& effect : surface.effects) {
     if (!sprung && effect.kind->order > EffectOrder::kDepth) {
-      stages.push_back(std::make_unique<AnyStageOf<SpringDamper>>(surface.spring));
+      stages.push_back(spring());
       sprung = true;
     }
     stages.push_back(effect.build());
   }
-  if (!sprung) stages.push_back(std::make_unique<AnyStageOf<SpringDamper>>(surface.spring));
+  if (!sprung) stages.push_back(spring());
   return StageList(std::move(stages));
 }
 
@@ -50,7 +54,7 @@ template <class Contact>
 std::unique_ptr<ObjectTouch> build_surface_touch(Contact contact, const SurfaceChoice& surface) {
   PathBounded bounded(std::move(contact));
   // A bare surface, by far the most frequent case, is composed entirely at compile time.
-  if (surface.effects.empty())
+  if (surface.effects.empty() && !surface.spring_stage)
     return adapt_law(ContactForceLaw(std::move(bounded), surface.spring));
   StageList stages = stage_list(surface);
   if (!stages.needs_closest_point())

@@ -100,8 +100,19 @@ bool read_scene_file(Bytes bytes) {
 }
 
 bool read_mesh(Bytes bytes, const char* name) {
-  const auto mesh = render::load_mesh(store(bytes, name));
+  const auto file = store(bytes, name);
+  const auto mesh = render::load_mesh(file);
+  render::MeshAttributes attributes;
+  const auto with_attributes = render::load_mesh_with_attributes(file, attributes);
   if (!accepted(mesh)) return false;
+  if (with_attributes) {
+    const std::size_t triangles = mesh->triangles.size();
+    check(with_attributes->triangles == mesh->triangles, "attributes do not change a mesh");
+    check(attributes.uv.empty() || attributes.uv.size() == triangles,
+          "texture coordinates belong to triangles");
+    check(attributes.colours.empty() || attributes.colours.size() == triangles,
+          "colours belong to triangles");
+  }
   check(!mesh->triangles.empty(), "a mesh has triangles");
   for (const auto& vertex : mesh->vertices) {
     check(vertex.cwiseAbs().maxCoeff() <= 1e15, "a vertex has valid coordinates");

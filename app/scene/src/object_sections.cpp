@@ -5,12 +5,15 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "energy_guard_settings.h"
 #include "surface/friction/friction_settings.h"
+#include "surface/texture/height_image.h"
 #include "worst_direction.h"
 #include "yaml/yaml_settings.h"
 
@@ -133,6 +136,35 @@ std::vector<render::EffectPlan> read_effects(YamlMap& object, const std::filesys
   std::stable_sort(plans.begin(), plans.end(),
                    [](const auto& a, const auto& b) { return a.kind->order < b.kind->order; });
   return plans;
+}
+
+render::MapChoice read_map(YamlMap map, const std::filesystem::path& folder, std::string_view unit,
+                           double low, double high) {
+  render::MapChoice choice;
+  const bool by_image = map.has("image"), by_colour = map.has("vertex_colour");
+  if (by_image && by_colour) {
+    map.refuse("vertex_colour", "cannot be used with image; keep one of them");
+  } else if (by_image) {
+    std::filesystem::path file;
+    YamlSettings(map, folder).file("image", file);
+    std::error_code status;
+    if (std::filesystem::is_regular_file(file, status)) {
+      auto image = render::HeightImage::load(file);
+      if (image) {
+        choice.image = std::make_shared<const render::HeightImage>(std::move(image).value());
+      } else {
+        map.refuse("image", image.error().message);
+      }
+    }
+  } else if (by_colour) {
+    choice.channel = map.require_choice("vertex_colour", {"red", "green", "blue"});
+  } else {
+    map.refuse_absence("expected one of image and vertex_colour, found none");
+  }
+  choice.black = map.require_number("min", unit, low, high);
+  choice.white = map.require_number("max", unit, low, high);
+  map.finish();
+  return choice;
 }
 
 render::FieldBuilder read_field(YamlMap& object, const std::filesystem::path& folder,

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "thimble/driver/export.h"
@@ -15,7 +16,7 @@
 
 namespace thimble::scene {
 
-// Sections of an object in a scene file: effects or field, shape, body.
+// Sections of an object in a scene file: effects or field, maps, shape, body.
 
 /// Returns the effect context of an arm and a loop of `rate` (Hz). The encoder step is that of the
 /// worst direction over the workspace (worst_direction.h). The values of the surface are 0.
@@ -28,6 +29,13 @@ THIMBLE_EXPORT render::EffectContext effect_context_of(const ArmFile& arm, doubl
 THIMBLE_EXPORT std::vector<render::EffectPlan> read_effects(YamlMap& object,
                                                             const std::filesystem::path& folder,
                                                             const render::EffectContext& context);
+
+/// Reads a map over the surface of a mesh, `{image: FILE.png, min, max}` or `{vertex_colour: red,
+/// min, max}`, with values in `unit` within limits. `min` is the value at black, `max` that at full
+/// brightness. Files are relative to `folder`. Mistakes are recorded in `map`. Real-time: never
+/// from the servo thread.
+render::MapChoice read_map(YamlMap map, const std::filesystem::path& folder, std::string_view unit,
+                           double low, double high);
 
 /// Reads the field of an object, `field: NAME` with its settings in the same map, and finishes the
 /// object. Mistakes are recorded in `object`. Real-time: never from the servo thread.

@@ -31,6 +31,8 @@ namespace {
 // arm can use [DEVICES 3].
 constexpr double kPositionMax = 2;                    // m
 constexpr double kStiffnessMax = 1e5;                 // N/m
+constexpr double kMapStiffnessMin = 1;                // N/m; less cannot be felt
+constexpr double kFrictionFactorMax = 10;             // of the coefficient of friction
 constexpr double kDampingMax = 1000;                  // N s/m
 constexpr double kSheetMin = 1e-5, kSheetMax = 0.02;  // m
 constexpr std::int64_t kBudgetMin = 1;                // MiB: 16 pages, around a tip at rest
@@ -136,9 +138,60 @@ void read_sheets(YamlMap& map, SceneObject& object) {
   object.contact.tracker = render::TrackerChoice::kGodObject;
 }
 
+/// Reads the stiffness over a surface: `stiffness` becomes the largest one.
+void read_stiffness_map(YamlMap& map, const std::filesystem::path& folder, SceneObject& object) {
+  if (map.has("stiffness")) {
+    map.refuse("stiffness", "cannot be used with stiffness_map; keep one of them");
+  }
+  object.stiffness_map =
+      read_map(map.require_map("stiffness_map"), folder, "N/m", kMapStiffnessMin, kStiffnessMax);
+  render::MapChoice& choice = *object.stiffness_map;
+  object.stiffness = std::max(choice.black, choice.white);
+  if (!(object.stiffness > 0)) return;  // refused already
+  choice.black /= object.stiffness;
+  choice.white /= object.stiffness;
+}
+
+/// Reads the factor of the frictions of an object.
+void read_friction_map(YamlMap& map, const std::filesystem::path& folder, SceneObject& object) {
+  object.friction_map =
+      read_map(map.require_map("friction_map"), folder, "", 0, kFrictionFactorMax);
+  const bool rubs = std::any_of(object.effects.begin(), object.effects.end(),
+                                [](const auto& one) { return one.kind->group == "friction"; });
+  if (!rubs) {
+    map.reject("friction_map",
+               "scales a friction, and the object has none; add effects: [{friction: bristle}]");
+  }
+}
+
+/// Checks the keys that exclude maps.
+void check_maps(YamlMap& map, const SceneObject& object) {
+  if (!object.needs_maps()) return;
+  const char* const key = object.stiffness_map  ? "stiffness_map"
+                          : object.friction_map ? "friction_map"
+                                                : "effects";
+  const std::string what = key == std::string_view("effects") ? "with map: uv " : "";
+  if (object.shape) {
+    map.reject(key, what + "needs mesh: a shape has no texture coordinates; remove map: uv");
+  } else if (object.paged) {
+    map.reject(key, what +
+                        "cannot be used with a page file, which keeps no texture coordinates or "
+                        "colours; use the mesh file itself");
+  } else if (object.sheet_thickness) {
+    map.reject(key, what +
+                        "cannot be used with open, whose rims have no texture coordinates or "
+                        "colours; close the mesh in its file and remove open");
+  } else if (object.body.dent || object.body.shape.named()) {
+    map.reject(key, what +
+                        "cannot be used on a body that deforms (dent, plastic, snap); remove the "
+                        "deformation, or the map");
+  }
+}
+
 /// Explains the keys of surfaces and meshes that an object without them does not use.
 void explain_unused_keys(YamlMap& map) {
-  for (const char* key : {"size", "scale", "repair", "open", "budget", "contact"}) {
+  for (const char* key :
+       {"size", "scale", "repair", "open", "budget", "contact", "stiffness_map", "friction_map"}) {
     map.explain_unused(key, "needs mesh");
   }
   for (const char* key : {"stiffness", "damping", "effects", "body"}) {
@@ -174,7 +227,11 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   }
   object.shape = read_shape(map, object.R_WO, object.p_WO);
   if (!object.shape) read_mesh(map, folder, mesh_folder, object);
-  object.stiffness = map.require_number("stiffness", "N/m", 0, kStiffnessMax);
+  if (!object.shape && map.has("stiffness_map")) {
+    read_stiffness_map(map, folder, object);
+  } else {
+    object.stiffness = map.require_number("stiffness", "N/m", 0, kStiffnessMax);
+  }
   object.damping = map.optional_number("damping", 0, "N s/m", 0, kDampingMax);
   object.paged = !object.mesh_file.empty() && render::is_page_file(object.mesh_file);
   if (!object.shape && map.has("contact")) {
@@ -200,13 +257,15 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   if (map.has("effects")) {
     object.effects = read_effects(map, folder, context);
   }
+  if (!object.shape && map.has("friction_map")) read_friction_map(map, folder, object);
   if (map.has("body")) {
     object.body = read_body(map, folder, context);
     const auto names = [&object](std::string_view group) {
       return std::any_of(object.effects.begin(), object.effects.end(),
                          [&](const auto& effect) { return effect.kind->group == group; });
     };
-    object.coupling = coupling_of(context, names("texture"), names("friction"));
+    object.coupling = coupling_of(context, names("texture") || object.stiffness_map.has_value(),
+                                  names("friction"));
     if (object.paged) {
       map.reject("body", "cannot be used with a page file, only with a mesh in memory");
     } else if (object.sheet_thickness && (object.body.dent || object.body.shape.named())) {
@@ -217,6 +276,7 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
                  "of a shape can only be motion: dent, plastic and snap need a mesh; name a mesh");
     }
   }
+  check_maps(map, object);
   map.finish();
   return object;
 }
@@ -291,6 +351,12 @@ void check_stall(YamlMap& root, double rate, const ArmFile& arm) {
 }
 
 }  // namespace
+
+bool SceneObject::needs_maps() const {
+  return stiffness_map || friction_map ||
+         std::any_of(effects.begin(), effects.end(),
+                     [](const auto& effect) { return effect.build.needs_maps(); });
+}
 
 driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& file,
                                  const SceneReading& reading) {

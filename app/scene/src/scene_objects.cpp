@@ -52,7 +52,13 @@ driver::Error refused(const SceneObject& object, const MeshPointer& mesh_W,
 /// surface move, it has its own mesh and search.
 Touched build_still(const SceneObject& object, const render::ContactChoice& contact,
                     const MeshPointer& mesh_W, SharedMeshes& meshes) {
-  const render::SurfaceChoice surface = surface_of(object);
+  render::SurfaceChoice surface = surface_of(object);
+  if (object.needs_maps() && !object.shape) {
+    // Loaded with the mesh already.
+    const auto loaded = meshes.object_mesh(object);
+    if (!loaded) return loaded.error();
+    surface.maps = (*loaded)->maps;
+  }
   if (object.shape) {
     return render::build_primitive_touch(object.shape->shape_W, surface, contact.tip_radius);
   }

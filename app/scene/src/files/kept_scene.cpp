@@ -153,7 +153,11 @@ driver::Result<fs::path> keep_scene(const std::string& text,
     if (root["objects"] && root["objects"].IsSequence()) {
       for (YAML::Node object : root["objects"]) {
         rewritten |= make_absolute(object, "mesh", beside);
-        if (!object.IsMap() || !object["effects"] || !object["effects"].IsSequence()) continue;
+        if (!object.IsMap()) continue;
+        for (const char* map : {"stiffness_map", "friction_map"}) {
+          if (object[map]) rewritten |= make_absolute(object[map], "image", beside);
+        }
+        if (!object["effects"] || !object["effects"].IsSequence()) continue;
         for (YAML::Node effect : object["effects"]) {
           rewritten |= make_absolute(effect, "image", beside);
         }

@@ -4,10 +4,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include "mesh/repair/orient_mesh.h"
 #include "mesh/repair/touching_parts.h"
+#include "mesh_maps.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/repair_mesh.h"
 #include "thimble/render/mesh/thicken_sheets.h"
@@ -23,6 +26,29 @@ constexpr render::RepairOptions kCleanedOnly{.tolerance = 0,
                                              .split_vertices = false,
                                              .hole_share = 0,
                                              .orient = true};
+
+/// Mesh of a file with its attributes, before any repair.
+struct FileMesh {
+  render::TriangleMesh mesh;
+  render::MeshAttributes attributes;
+};
+
+/// Returns the maps of a touched mesh that a repair has made of the triangles `origins` of a file.
+std::shared_ptr<const render::SurfaceMaps> maps_of(FileMesh file, const MeshPlacement& place,
+                                                   const Eigen::Matrix3d& R_WO,
+                                                   std::vector<std::int32_t> origins) {
+  if (origins.empty()) {
+    origins.resize(file.mesh.triangles.size());
+    std::iota(origins.begin(), origins.end(), 0);
+  }
+  // Not render::placed: it turns the triangles of a mirrored mesh, and the attributes keep theirs.
+  for (Eigen::Vector3d& p : file.mesh.vertices) {
+    const Eigen::Vector3d scaled = place.scale * p;
+    p = R_WO * scaled + place.p_WM;
+  }
+  return std::make_shared<const render::SurfaceMaps>(
+      render::surface_maps_of(file.mesh.vertices, file.mesh.triangles, file.attributes, origins));
+}
 
 }  // namespace
 
@@ -105,11 +131,17 @@ driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object) {
     return object.mesh_file.string() + ": " + sentence;
   };
   render::MeshFileInfo info;
-  auto loaded = render::load_mesh(object.mesh_file, &info);
+  const bool with_maps = object.needs_maps();
+  FileMesh file;
+  auto loaded = with_maps
+                    ? render::load_mesh_with_attributes(object.mesh_file, file.attributes, &info)
+                    : render::load_mesh(object.mesh_file, &info);
   if (!loaded) return loaded.error();
   ObjectMesh done;
   for (const std::string& note : info.notes) done.notes.push_back(about(note));
   render::TriangleMesh mesh = std::move(loaded).value();
+  if (with_maps) file.mesh = mesh;
+  std::vector<std::int32_t> origins;  // empty: not repaired
   if (object.repair || object.sheet_thickness) {
     render::RepairedMesh repaired =
         render::repair_mesh(mesh, object.repair ? render::RepairOptions() : kCleanedOnly);
@@ -120,11 +152,15 @@ driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object) {
       return driver::Error{about("no triangle has an area; export the mesh again.")};
     }
     mesh = std::move(repaired.mesh);
+    origins = std::move(repaired.origins);
   }
   SceneObject placed = object;
   if (!placed.scale) placed.scale = info.unit;
   done.place = placement_of(mesh, placed);
   done.mesh_W = place_mesh(mesh, placed);
+  if (with_maps) {
+    done.maps = maps_of(std::move(file), done.place, object.R_WO, std::move(origins));
+  }
   if (object.sheet_thickness) {
     render::ThickenedMesh thick = render::thicken_sheets(done.mesh_W, *object.sheet_thickness);
     if (thick.report.sheets > 0) done.notes.push_back(about(render::describe(thick.report)));

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "disk_paging/paged_contact.h"
 #include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
+#include "thimble/render/build_object_touch.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/scene/scene_file.h"
 
@@ -72,6 +74,8 @@ struct ObjectMesh {
   MeshPlacement place;             ///< Placement of the file's coordinates in the world.
   ObjectSize size;                 ///< Size of the mesh in the world.
   std::vector<std::string> notes;  ///< Repairs, omissions and assumptions, one sentence each.
+  /// Texture coordinates and vertex colours, if the object uses them.
+  std::shared_ptr<const render::SurfaceMaps> maps;
 };
 
 /// Reads the mesh file of an object, repairs it (`repair: true`), places it in the world, and makes

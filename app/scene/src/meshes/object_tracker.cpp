@@ -29,7 +29,9 @@ render::SurfaceChoice surface_of(const SceneObject& object) {
   return {.spring = {.stiffness = object.stiffness, .damping = object.damping},
           .effects = object.effects,
           .dent = object.body.dent,
-          .shape = object.body.shape};
+          .shape = object.body.shape,
+          .stiffness_map = object.stiffness_map,
+          .friction_map = object.friction_map};
 }
 
 ObjectTracker tracker_of(const SceneObject& object, const std::shared_ptr<const ObjectMesh>& mesh,

@@ -45,6 +45,7 @@ struct MeshKey {
         scale(object.scale),
         repair(object.repair),
         sheet_thickness(object.sheet_thickness),
+        with_maps(object.needs_maps()),
         R_WO(object.R_WO),
         p_WO(object.p_WO) {}
 
@@ -55,6 +56,7 @@ struct MeshKey {
   std::optional<double> size, scale;
   bool repair;
   std::optional<double> sheet_thickness;
+  bool with_maps;
   Eigen::Matrix3d R_WO;
   Eigen::Vector3d p_WO;
 };

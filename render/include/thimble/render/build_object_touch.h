@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -10,11 +11,32 @@
 #include "thimble/render/body/shape_choice.h"
 #include "thimble/render/contact_choice.h"
 #include "thimble/render/effect/effect_table.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/render/object_touch.h"
 #include "thimble/render/surface/spring_damper.h"
 
 namespace thimble::render {
+
+class HeightImage;
+
+/// Texture coordinates and vertex colours of a touched mesh.
+struct SurfaceMaps;
+
+/// Returns the maps of a mesh (W, m). `attributes` are those of its file, with the triangles in the
+/// same order. The error states that their numbers differ. Real-time: never from the servo thread.
+THIMBLE_EXPORT driver::Result<std::shared_ptr<const SurfaceMaps>> make_surface_maps(
+    const TriangleMesh& mesh_W, const MeshAttributes& attributes);
+
+/// Quantity that varies over a surface: by a grey picture on the texture coordinates, or by one of
+/// the vertex colours. The value is interpolated between `black` and `white`.
+struct MapChoice {
+  /// Picture, read by a scene; null: vertex colours.
+  std::shared_ptr<const HeightImage> image = {};
+  std::size_t channel = 0;  ///< Vertex colour: 0 red, 1 green, 2 blue.
+  double black = 0;         ///< Value where picture or colour are 0.
+  double white = 1;         ///< Value where picture or colour are full.
+};
 
 /// Surface properties of one object: its spring, and the effects of the scene in the order of
 /// execution.
@@ -25,6 +47,15 @@ struct SurfaceChoice {
   std::optional<DentSettings> dent = {};
   /// Deformation of the base points; only for a mesh in memory.
   ShapeChoice shape = {};
+  /// Maps of the mesh, for all below and for effects that need them; only for a mesh in memory that
+  /// does not deform.
+  std::shared_ptr<const SurfaceMaps> maps = {};
+  /// Factor of the stiffness of `spring`, from 0 to 1.
+  std::optional<MapChoice> stiffness_map = {};
+  /// Factor of the coefficients of all frictions in `effects`, >= 0.
+  std::optional<MapChoice> friction_map = {};
+  /// Stage that replaces `spring`, if it holds a function.
+  StageBuilder spring_stage = {};
 };
 
 /// Builds the force law of one object (mesh in W, m) from only the stages that `choice` and

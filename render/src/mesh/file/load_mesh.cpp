@@ -53,23 +53,25 @@ driver::Result<void> drop_mark(std::string& bytes) {
 }
 
 driver::Result<TriangleMesh> read(std::string bytes, const std::string& kind,
-                                  const std::filesystem::path& file, MeshFileInfo& info) {
+                                  const std::filesystem::path& file, MeshFileInfo& info,
+                                  MeshAttributes* attributes) {
   const bool is_text = kind == "off" || kind == "obj" || kind == "stl" || kind == "ply";
   if (is_text) {
     if (auto done = drop_mark(bytes); !done) return done.error();
   }
   if (kind == "off") return read_off(bytes, file.string());
-  if (kind == "obj") return read_obj(bytes, file.string(), info.notes);
-  if (kind == "ply") return read_ply(bytes, info.notes);
+  if (kind == "obj") return read_obj(bytes, file.string(), info.notes, attributes);
+  if (kind == "ply") return read_ply(bytes, info.notes, attributes);
   if (kind == "stl") return read_stl(bytes, file.string(), info.notes);
   if (kind == "3mf") return read_3mf(bytes, info);
-  if (kind == "gltf" || kind == "glb") return read_gltf(bytes, kind, file.parent_path(), info);
+  if (kind == "gltf" || kind == "glb") {
+    return read_gltf(bytes, kind, file.parent_path(), info, attributes);
+  }
   return read_with_assimp(bytes, kind, info);
 }
 
-}  // namespace
-
-driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file, MeshFileInfo* info) {
+driver::Result<TriangleMesh> load(const std::filesystem::path& file, MeshFileInfo* info,
+                                  MeshAttributes* attributes) {
   const auto error = [&file](const std::string& sentence) {
     // Errors of a line of text already name file and line.
     return driver::Error{
@@ -93,11 +95,25 @@ driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file, MeshFi
     found.notes.push_back("Its contents are " + capitals(found.kind) +
                           ", so the extension was ignored.");
   }
-  auto mesh = read(std::move(bytes).value(), found.kind, file, found);
+  auto mesh = read(std::move(bytes).value(), found.kind, file, found, attributes);
   if (!mesh) return error(mesh.error().message);
   found.kind = capitals(found.kind);
   if (info != nullptr) *info = std::move(found);
+  // Welding keeps the triangles and their corners in place.
   return weld_mesh(std::move(mesh).value());
+}
+
+}  // namespace
+
+driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file, MeshFileInfo* info) {
+  return load(file, info, nullptr);
+}
+
+driver::Result<TriangleMesh> load_mesh_with_attributes(const std::filesystem::path& file,
+                                                       MeshAttributes& attributes,
+                                                       MeshFileInfo* info) {
+  attributes = {};
+  return load(file, info, &attributes);
 }
 
 }  // namespace thimble::render

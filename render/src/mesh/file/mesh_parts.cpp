@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "mesh/file/corner_values.h"
 #include "mesh/file/read_off.h"  // kCoordinateMax
 
 namespace thimble::render {
@@ -12,10 +13,21 @@ namespace {
 // More than any file that can be touched has; instances can multiply a small file.
 constexpr std::size_t kTrianglesMax = 100'000'000;
 
+// Appends the values of a part whose triangles begin at `first`, turned if the part is.
+template <class Values>
+void append_part(const Values& part, std::size_t first, bool mirrored, Values& whole) {
+  if (part.empty()) return;
+  using Vector = typename Values::value_type::value_type;
+  whole.resize(first, {no_value<Vector>(), no_value<Vector>(), no_value<Vector>()});
+  for (const auto& [a, b, c] : part) {
+    whole.push_back({a, mirrored ? c : b, mirrored ? b : c});
+  }
+}
+
 }  // namespace
 
 driver::Result<void> MeshParts::add(const TriangleMesh& part, const Eigen::Affine3d& place,
-                                    bool single) {
+                                    bool single, const MeshAttributes* attributes) {
   if (mesh_.triangles.size() + part.triangles.size() > kTrianglesMax ||
       mesh_.vertices.size() + part.vertices.size() > 3 * kTrianglesMax) {
     return driver::Error{"it has more than 100 million triangles."};
@@ -33,6 +45,10 @@ driver::Result<void> MeshParts::add(const TriangleMesh& part, const Eigen::Affin
     }
     mesh_.vertices.push_back(p);
   }
+  if (attributes != nullptr) {
+    append_part(attributes->uv, mesh_.triangles.size(), mirrored, attributes_.uv);
+    append_part(attributes->colours, mesh_.triangles.size(), mirrored, attributes_.colours);
+  }
   for (const auto& [a, b, c] : part.triangles) {
     mesh_.triangles.push_back({first + a, first + (mirrored ? c : b), first + (mirrored ? b : c)});
   }
@@ -48,7 +64,12 @@ driver::Result<TriangleMesh> MeshParts::take(std::vector<std::string>& notes) {
     notes.push_back(std::to_string(moved_) + " of " + std::to_string(parts_) +
                     (parts_ == 1 ? " part was" : " parts were") + " placed by the file's nodes.");
   }
+  complete(mesh_.triangles.size(), attributes_);
   return std::move(mesh_);
+}
+
+MeshAttributes MeshParts::take_attributes() {
+  return std::move(attributes_);
 }
 
 }  // namespace thimble::render

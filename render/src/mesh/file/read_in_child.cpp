@@ -15,9 +15,10 @@ constexpr std::size_t kBytesPerSecond = 500'000;
 constexpr std::size_t kMemoryMin = std::size_t{1} << 30;
 constexpr std::size_t kMemoryPerByte = 200;
 
-// Writes the error sentence, or an empty one, the information of the file, and the mesh.
+// Writes the error sentence, or an empty one, the information of the file, the mesh, and its
+// attributes if they are read.
 void write_mesh(const driver::Result<TriangleMesh>& mesh, const MeshFileInfo& info,
-                driver::SandboxWriter& out) {
+                const MeshAttributes* attributes, driver::SandboxWriter& out) {
   const std::string error = mesh ? std::string() : mesh.error().message;
   out.write_array(error.data(), error.size());
   if (!mesh) return;
@@ -29,6 +30,15 @@ void write_mesh(const driver::Result<TriangleMesh>& mesh, const MeshFileInfo& in
   out.write(&info.up, sizeof info.up);
   out.write_array(mesh->vertices.data(), mesh->vertices.size());
   out.write_array(mesh->triangles.data(), mesh->triangles.size());
+  if (attributes == nullptr) return;
+  out.write_array(attributes->uv.data(), attributes->uv.size());
+  out.write_array(attributes->colours.data(), attributes->colours.size());
+}
+
+// Returns whether a list of attributes is empty or has an entry per triangle.
+template <class Values>
+bool fits(const Values& values, const TriangleMesh& mesh) {
+  return values.empty() || values.size() == mesh.triangles.size();
 }
 
 // Returns whether each triangle names existing vertices.
@@ -55,13 +65,14 @@ driver::Error unreadable(const std::string& kind, const std::string& reason) {
 }
 
 driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::string& kind,
-                                           const driver::SandboxLimits& limits,
-                                           MeshFileInfo& info) {
-  const std::function<void(driver::SandboxWriter&)> work = [&read](driver::SandboxWriter& out) {
-    MeshFileInfo found;
-    const auto mesh = read(found);
-    write_mesh(mesh, found, out);
-  };
+                                           const driver::SandboxLimits& limits, MeshFileInfo& info,
+                                           MeshAttributes* attributes) {
+  const std::function<void(driver::SandboxWriter&)> work =
+      [&read, attributes](driver::SandboxWriter& out) {
+        MeshFileInfo found;
+        const auto mesh = read(found);
+        write_mesh(mesh, found, attributes, out);
+      };
   const auto done = driver::run_in_sandbox(work, limits);
   if (!done) return unreadable(kind, "it " + done.error().message);
   driver::SandboxReader in(done->bytes());
@@ -73,6 +84,11 @@ driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::st
   if (!error.empty()) return driver::Error{error};
   if (!in.take_array(notes) || !in.take(&unit, sizeof unit) || !in.take(&info.up, sizeof info.up) ||
       !in.take_array(mesh.vertices) || !in.take_array(mesh.triangles) || !has_its_vertices(mesh)) {
+    return broken;
+  }
+  if (attributes != nullptr &&
+      (!in.take_array(attributes->uv) || !in.take_array(attributes->colours) ||
+       !fits(attributes->uv, mesh) || !fits(attributes->colours, mesh))) {
     return broken;
   }
   std::istringstream lines(notes);

@@ -23,8 +23,9 @@ driver::Error unreadable(const std::string& kind, const std::string& reason);
 
 /// Runs a reader in a separate process with limits of time and memory. The error is the reader's,
 /// or `unreadable` if the process reached its limits or crashed. Real-time: never from the servo
-/// thread.
+/// thread. `attributes`, if not null, is filled by `read` in that process, and carried over.
 driver::Result<TriangleMesh> read_in_child(const MeshReader& read, const std::string& kind,
-                                           const driver::SandboxLimits& limits, MeshFileInfo& info);
+                                           const driver::SandboxLimits& limits, MeshFileInfo& info,
+                                           MeshAttributes* attributes = nullptr);
 
 }  // namespace thimble::render

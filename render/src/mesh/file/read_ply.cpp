@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/file/corner_values.h"
 #include "mesh/file/read_off.h"  // kCoordinateMax
 #include "mesh/file/single_precision.h"
 #include "mesh/file/text_words.h"
@@ -210,14 +211,99 @@ bool read_property(const Property& property, Numbers& numbers, Take&& take) {
   return true;
 }
 
+// Texture coordinates and colours of the vertices of a file.
+class VertexValues {
+ public:
+  // Finds the properties of the vertices.
+  explicit VertexValues(const Header& header) {
+    for (const Element& element : header.elements) {
+      if (element.name != "vertex") continue;
+      for (const auto& [u, v] : kCoordinates) {
+        if (uv_[0] == nullptr) uv_ = {property(element, u), property(element, v)};
+        if (uv_[0] == nullptr || uv_[1] == nullptr) uv_ = {};
+      }
+      colour_ = {property(element, "red"), property(element, "green"), property(element, "blue")};
+      if (colour_[0] == nullptr || colour_[1] == nullptr || colour_[2] == nullptr) colour_ = {};
+    }
+  }
+
+  // Begins the next vertex.
+  void begin() {
+    if (uv_[0] != nullptr) uv_values_.emplace_back(0, 0);
+    if (colour_[0] != nullptr) colour_values_.emplace_back(0, 0, 0);
+  }
+  // Receives a number of the vertex.
+  void take(const Property& property, double value) {
+    for (std::size_t k = 0; k < uv_.size(); ++k) {
+      if (&property == uv_[k]) uv_values_.back()[static_cast<Eigen::Index>(k)] = value;
+    }
+    for (std::size_t k = 0; k < colour_.size(); ++k) {
+      if (&property != colour_[k]) continue;
+      colour_values_.back()[static_cast<Eigen::Index>(k)] = value / full(*property.type);
+    }
+  }
+  // Returns what is wrong with the values of the last vertex; empty if nothing is.
+  std::string_view wrong() const {
+    // Written so that NaN is wrong.
+    if (!uv_values_.empty()) {
+      const Eigen::Vector2d& uv = uv_values_.back();
+      if (!(std::abs(uv[0]) <= kTextureCoordinateMax && std::abs(uv[1]) <= kTextureCoordinateMax)) {
+        return "a texture coordinate that is not a number between -1e6 and 1e6";
+      }
+    }
+    if (!colour_values_.empty()) {
+      for (const double share : colour_values_.back()) {
+        if (!(share >= 0 && share <= 1)) return "a colour that is not three numbers from 0 to 1";
+      }
+    }
+    return {};
+  }
+  // Hands the values out to the corners of a mesh.
+  void give(const TriangleMesh& mesh, MeshAttributes& attributes) const {
+    const auto of = [](const auto& values) {
+      return [&values](std::int32_t vertex) { return values[static_cast<std::size_t>(vertex)]; };
+    };
+    if (!uv_values_.empty()) append_values(mesh.triangles, 0, of(uv_values_), attributes.uv);
+    if (!colour_values_.empty()) {
+      append_values(mesh.triangles, 0, of(colour_values_), attributes.colours);
+    }
+  }
+
+ private:
+  // Names used by Blender, MeshLab and others. [S exporters of Blender 3.4 and MeshLab 2022.02]
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kCoordinates{
+      {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}};
+
+  static const Property* property(const Element& element, std::string_view name) {
+    const auto found = std::find_if(
+        element.properties.begin(), element.properties.end(),
+        [name](const Property& one) { return one.name == name && one.count == nullptr; });
+    return found == element.properties.end() ? nullptr : &*found;
+  }
+  // Returns the value of a colour at full brightness: the largest integer, or 1.
+  static double full(const NumberType& type) {
+    if (type.kind == 'f') return 1;
+    const int bits = static_cast<int>(8 * type.size) - (type.kind == 'i' ? 1 : 0);
+    return std::ldexp(1, bits) - 1;
+  }
+
+  std::array<const Property*, 2> uv_{};
+  std::array<const Property*, 3> colour_{};
+  std::vector<Eigen::Vector2d> uv_values_;
+  std::vector<Eigen::Vector3d> colour_values_;
+};
+
+// `values` is null if texture coordinates and colours are not read.
 std::optional<Error> read_vertex(const Element& element, std::int64_t number, Numbers& numbers,
-                                 TriangleMesh& mesh) {
+                                 TriangleMesh& mesh, VertexValues* values) {
   Eigen::Vector3d vertex(0, 0, 0);
+  if (values != nullptr) values->begin();
   for (const Property& property : element.properties) {
     const std::size_t axis = std::string_view("xyz").find(property.name);
     const bool wanted = property.name.size() == 1 && axis != std::string_view::npos;
     const auto take = [&](double value) {
       if (wanted) vertex[static_cast<Eigen::Index>(axis)] = value;
+      if (values != nullptr) values->take(property, value);
     };
     if (!read_property(property, numbers, take)) return ends_in(element, number);
   }
@@ -226,6 +312,9 @@ std::optional<Error> read_vertex(const Element& element, std::int64_t number, Nu
       return Error{"vertex " + std::to_string(number) +
                    " has a coordinate that is not a number between -1e15 and 1e15."};
     }
+  }
+  if (values != nullptr && !values->wrong().empty()) {
+    return Error{"vertex " + std::to_string(number) + " has " + std::string(values->wrong()) + "."};
   }
   mesh.vertices.push_back(vertex);
   return std::nullopt;
@@ -291,13 +380,16 @@ bool is_single(const Header& header) {
 
 }  // namespace
 
-driver::Result<TriangleMesh> read_ply(std::string_view bytes, std::vector<std::string>& notes) {
+driver::Result<TriangleMesh> read_ply(std::string_view bytes, std::vector<std::string>& notes,
+                                      MeshAttributes* attributes) {
   if (bytes.empty()) return Error{"the file is empty."};
   std::string_view rest = bytes;
   const auto header = read_header(rest);
   if (!header) return header.error();
   if (auto error = check_elements(*header)) return *error;
   TriangleMesh mesh;
+  std::optional<VertexValues> values;
+  if (attributes != nullptr) values.emplace(*header);
   std::vector<std::int32_t> corners;
   Numbers numbers(rest, *header->form);
   for (const Element& element : header->elements) {
@@ -308,7 +400,7 @@ driver::Result<TriangleMesh> read_ply(std::string_view bytes, std::vector<std::s
     for (std::int64_t i = 0; i < element.count; ++i) {
       std::optional<Error> error;
       if (element.name == "vertex") {
-        error = read_vertex(element, i, numbers, mesh);
+        error = read_vertex(element, i, numbers, mesh, values ? &*values : nullptr);
       } else if (element.name == "face") {
         error = read_face(element, i, numbers, corners, mesh);
       } else {
@@ -325,6 +417,7 @@ driver::Result<TriangleMesh> read_ply(std::string_view bytes, std::vector<std::s
     for (const Eigen::Vector3d& vertex : mesh.vertices) precision.add(vertex);
     if (auto kept = precision.judge(mesh, notes); !kept) return kept.error();
   }
+  if (values) values->give(mesh, *attributes);
   return mesh;
 }
 

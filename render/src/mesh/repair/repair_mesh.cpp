@@ -57,11 +57,15 @@ class Repair {
       if (changes() == before) break;
     }
     if (options_.split_vertices) split();
+    const std::size_t whole = done_.mesh.triangles.size();
     if (options_.hole_share > 0 && options_.drop) fill();
     if (options_.orient) orient();
     if (options_.drop) drop_unused();
     std::sort(done_.changes.begin(), done_.changes.end(),
               [](const RepairChange& a, const RepairChange& b) { return a.kind < b.kind; });
+    // No later step removes or reorders triangles.
+    std::fill(origin_.begin() + static_cast<std::ptrdiff_t>(whole), origin_.end(), -1);
+    done_.origins = std::move(origin_);
     return std::move(done_);
   }
 

@@ -1,6 +1,9 @@
 #include "surface/texture/height_map.h"
 
+#include <memory>
 #include <utility>
+
+#include "surface/texture/uv_height_map.h"
 
 namespace thimble::render {
 
@@ -8,11 +11,23 @@ void HeightMap::Settings::read(SettingsReader& reader, const EffectContext& cont
   TextureSettings::read(reader);
   std::filesystem::path file;
   reader.file("image", file);
-  reader.number("width", width, {.unit = "m", .min = 1e-4, .max = 1, .required = true});
+  auto mapping = static_cast<std::size_t>(map);
+  reader.choice("map", mapping, {"projected", "uv"});
+  map = static_cast<Mapping>(mapping);
+  if (map == Mapping::kUv) {
+    for (const char* key : {"width", "along"}) {
+      reader.explain_unused(key,
+                            "needs map: projected; with map: uv the mesh file places the image");
+    }
+  } else {
+    reader.number("width", width, {.unit = "m", .min = 1e-4, .max = 1, .required = true});
+  }
   reader.number("height", height, {.unit = "m", .min = 0, .max = 0.05, .required = true});
-  auto chosen = static_cast<std::size_t>(along);
-  reader.choice("along", chosen, {"all", "x", "y", "z"});
-  along = static_cast<Along>(chosen);
+  if (map == Mapping::kProjected) {
+    auto chosen = static_cast<std::size_t>(along);
+    reader.choice("along", chosen, {"all", "x", "y", "z"});
+    along = static_cast<Along>(chosen);
+  }
   if (file.empty() || !std::filesystem::is_regular_file(file)) return;  // refused already
   auto loaded = HeightImage::load(file);
   if (!loaded) {
@@ -20,7 +35,8 @@ void HeightMap::Settings::read(SettingsReader& reader, const EffectContext& cont
     return;
   }
   image = std::make_shared<const HeightImage>(std::move(loaded).value());
-  if (!(width > 0)) return;
+  // By texture coordinates it is checked on the mesh.
+  if (map == Mapping::kUv || !(width > 0)) return;
   check_texture(reader, "height", extent(), *this, context);
 }
 
@@ -41,6 +57,18 @@ HeightMap::HeightMap(const Settings& settings, const EffectContext& context)
   if (!image_) return;
   extent_ = settings.extent();
   max_height_ = height_ * texture_headroom(extent_, context);
+}
+
+StageBuilder HeightMap::builder(const Settings& settings, const EffectContext& context) {
+  if (settings.map == Mapping::kUv) {
+    return StageBuilder::on_maps(
+        [settings, context](const std::shared_ptr<const SurfaceMaps>& maps) {
+          return UvHeightMap::on(maps, settings, context);
+        });
+  }
+  return [settings, context] {
+    return std::make_unique<AnyStageOf<HeightMap>>(HeightMap(settings, context));
+  };
 }
 
 void HeightMap::list_settings(LiveSettings& settings) {

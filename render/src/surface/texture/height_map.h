@@ -32,18 +32,29 @@ class THIMBLE_EXPORT HeightMap {
   /// only from one side.
   enum class Along : std::uint8_t { kAll, kX, kY, kZ };
 
+  /// Place of the image on the surface.
+  enum class Mapping : std::uint8_t {
+    kProjected,  ///< Projected along axes.
+    kUv,         ///< By the texture coordinates of the mesh (uv_height_map.h).
+  };
+
   struct Settings : TextureSettings {
     std::shared_ptr<const HeightImage> image;  ///< Its heights.
     double width = 0;                          ///< Width of the picture on the surface, m.
     double height = 0;                         ///< Height from black to white, m.
     Along along = Along::kAll;                 ///< Axes of projection.
+    Mapping map = Mapping::kProjected;         ///< Place of the image on the surface.
 
-    /// Reads `form`, `hand_speed`, `image`, `width`, `height`, `along`.
+    /// Reads `form`, `hand_speed`, `map`, `image`, `height` and, if projected, `width` and `along`.
     /// Real-time: never from the servo thread.
     void read(SettingsReader& reader, const EffectContext& context);
     /// Returns its height and slope. Precondition: it has an image and a width. Real-time: safe.
     TextureExtent extent() const noexcept;
   };
+
+  /// Returns the builder of the stage for the chosen mapping. Real-time: never from the servo
+  /// thread.
+  static StageBuilder builder(const Settings& settings, const EffectContext& context);
 
   /// Precondition: there is an image. Real-time: never from the servo thread.
   HeightMap(const Settings& settings, const EffectContext& context);

@@ -12,6 +12,7 @@
 #include "thimble/render/body/dent_settings.h"
 #include "thimble/render/body/motion_choice.h"
 #include "thimble/render/body/shape_choice.h"
+#include "thimble/render/build_object_touch.h"
 #include "thimble/render/build_primitive_touch.h"
 #include "thimble/render/contact_choice.h"
 #include "thimble/render/effect/effect_table.h"
@@ -43,9 +44,9 @@ struct SceneBody {
 
 /// Object of a scene: a mesh, a shape or a field, with its place and feel.
 struct SceneObject {
-  std::string name;                  ///< Name, unique in the scene.
-  std::filesystem::path mesh_file;   ///< Mesh file; empty for a shape or a field.
-  bool paged = false;                ///< True if that is a page file, which stays mostly on disk.
+  std::string name;                 ///< Name, unique in the scene.
+  std::filesystem::path mesh_file;  ///< Mesh file; empty for a shape or a field.
+  bool paged = false;               ///< True if that is a page file, which stays mostly on disk.
   /// Memory for the pages of a page file, MiB; empty: that of render::PagingSettings.
   std::optional<std::size_t> page_budget;
   std::optional<SceneShape> shape;   ///< Shape, if used instead of a mesh.
@@ -60,8 +61,12 @@ struct SceneObject {
   Eigen::Matrix3d R_WO = Eigen::Matrix3d::Identity();  ///< Rotation of the mesh in the world.
   /// Centre of the bounding box of the rotated mesh, in the world, m.
   Eigen::Vector3d p_WO{0, 0, 0};
-  double stiffness = 0;  ///< Stiffness, N/m.
+  double stiffness = 0;  ///< Stiffness, N/m; with a `stiffness_map` the largest one.
   double damping = 0;    ///< Damping, N s/m.
+  /// Factor of `stiffness` over the surface, from 0 to 1.
+  std::optional<render::MapChoice> stiffness_map;
+  /// Factor of the coefficients of friction over the surface.
+  std::optional<render::MapChoice> friction_map;
   /// How the surface is found, tracked and rendered. If `tracker_named` is false and `tracker` is
   /// kEdgePlanes, `SceneObjects::build` chooses the tracker from the mesh (render::choose_tracker).
   render::ContactChoice contact;
@@ -72,6 +77,10 @@ struct SceneObject {
   SceneBody body;  ///< Material.
   /// Bounds of the surface response, used if the object moves.
   render::BodyCoupling coupling;
+
+  /// Returns whether texture coordinates or vertex colours of the mesh file are used. Real-time:
+  /// never from the servo thread.
+  bool needs_maps() const;
 };
 
 /// Place of one of several arms in a scene: a rotation about the vertical, then a translation.

@@ -5,8 +5,11 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "thimble/driver/export.h"
+#include "thimble/driver/result.h"
 #include "thimble/render/effect/effect_context.h"
 #include "thimble/render/effect/settings_reader.h"
 #include "thimble/render/effect/stage_list.h"
@@ -19,9 +22,47 @@ enum class EffectOrder : std::uint8_t {
   kTangential,  ///< Adds force along the surface, after the spring: friction.
 };
 
+struct SurfaceMaps;
+
 /// Builds a stage from validated settings; may be called repeatedly. Real-time: never from the
 /// servo thread.
-using StageBuilder = std::function<std::unique_ptr<AnyStage>()>;
+class StageBuilder {
+ public:
+  /// Function that builds a stage.
+  using Build = std::function<std::unique_ptr<AnyStage>()>;
+  /// Function that returns the builder for the maps of a mesh (make_surface_maps), or an error.
+  using OnMaps =
+      std::function<driver::Result<StageBuilder>(const std::shared_ptr<const SurfaceMaps>&)>;
+
+  StageBuilder() = default;
+  /// Takes a function that builds a stage.
+  template <class Function>
+  requires(!std::is_same_v<std::remove_cvref_t<Function>, StageBuilder> &&
+           std::is_constructible_v<Build, Function>) StageBuilder(Function&& build)  // NOLINT
+      : build_(std::forward<Function>(build)) {}
+  /// Returns a builder for a stage that depends on the texture coordinates or the colours of a
+  /// mesh.
+  static StageBuilder on_maps(OnMaps on_maps) {
+    StageBuilder builder;
+    builder.on_maps_ = std::move(on_maps);
+    return builder;
+  }
+
+  /// Returns whether the stage needs the maps of a mesh: then only `on` may be called.
+  bool needs_maps() const { return static_cast<bool>(on_maps_); }
+  /// Returns the builder for the maps of a mesh. Precondition: `needs_maps`.
+  driver::Result<StageBuilder> on(const std::shared_ptr<const SurfaceMaps>& maps) const {
+    return on_maps_(maps);
+  }
+  /// Builds a stage. Precondition: it holds a function, and `needs_maps` is false.
+  std::unique_ptr<AnyStage> operator()() const { return build_(); }
+  /// Returns whether it holds a function.
+  explicit operator bool() const { return build_ || on_maps_; }
+
+ private:
+  Build build_;
+  OnMaps on_maps_;
+};
 
 /// Effect that a scene can apply to an object: `- GROUP: NAME` and its settings.
 struct EffectKind {
@@ -43,7 +84,8 @@ struct EffectPlan {
 
 /// Returns the table entry of an effect: a SurfaceStage with `kGroup`, `kName`, `kOrder`, a struct
 /// `Settings` with `read(SettingsReader&, const EffectContext&)`, and a constructor from `(const
-/// Settings&, const EffectContext&)`. A constant `kRests` is optional.
+/// Settings&, const EffectContext&)`. A constant `kRests` is optional, and so is a function
+/// `builder(const Settings&, const EffectContext&)`, for effects of several stages.
 template <SurfaceStage Stage>
 constexpr EffectKind effect_kind() {
   bool rests = true;
@@ -52,9 +94,13 @@ constexpr EffectKind effect_kind() {
           [](SettingsReader& reader, const EffectContext& context) -> StageBuilder {
             typename Stage::Settings settings;
             settings.read(reader, context);
-            return [settings, context]() -> std::unique_ptr<AnyStage> {
-              return std::make_unique<AnyStageOf<Stage>>(Stage(settings, context));
-            };
+            if constexpr (requires { Stage::builder(settings, context); }) {
+              return Stage::builder(settings, context);
+            } else {
+              return [settings, context]() -> std::unique_ptr<AnyStage> {
+                return std::make_unique<AnyStageOf<Stage>>(Stage(settings, context));
+              };
+            }
           },
           rests};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -26,6 +27,17 @@ struct MeshFileInfo {
   std::vector<std::string> notes;  ///< Omissions and repairs, one sentence each.
 };
 
+/// Texture coordinates and vertex colours of a mesh file. They belong to the corners of triangles,
+/// because a file may give one vertex several of them. Each list has one entry per triangle of the
+/// mesh, in its order and winding, or is empty if the file has no such data. A corner without a
+/// value has NaN.
+struct MeshAttributes {
+  /// Texture coordinates: (0, 0) is the lower left corner of a picture, (1, 1) the upper right one.
+  std::vector<std::array<Eigen::Vector2d, 3>> uv;
+  /// Red, green and blue, each from 0 to 1.
+  std::vector<std::array<Eigen::Vector3d, 3>> colours;
+};
+
 /// Reads a mesh file with a known extension (`kMeshEndings`). The contents determine the format; if
 /// they are inconclusive, the extension does. Polygons are split into triangles, and vertices at
 /// exactly the same position are merged (STL cannot share vertices). Parts are placed as the file's
@@ -45,6 +57,14 @@ struct MeshFileInfo {
 /// block this process. Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<TriangleMesh> load_mesh(const std::filesystem::path& file,
                                                       MeshFileInfo* info = nullptr);
+
+/// Reads a mesh file as load_mesh does, and its texture coordinates and vertex colours: of OBJ (vt,
+/// and colours after the coordinates of v), PLY (s and t, u and v, or texture_u and texture_v; red,
+/// green and blue) and glTF (TEXCOORD_0, COLOR_0). Other formats have none. The mesh is
+/// bit-identical to that of load_mesh. The error also reports a texture coordinate or colour that
+/// is not a finite number or does not exist. Real-time: never from the servo thread.
+THIMBLE_EXPORT driver::Result<TriangleMesh> load_mesh_with_attributes(
+    const std::filesystem::path& file, MeshAttributes& attributes, MeshFileInfo* info = nullptr);
 
 /// Transforms a mesh from its own frame O into the world W: p_WV = R_WO * (scale * p_OV) + p_WO for
 /// each vertex V. `scale` converts the file's unit to m and must be finite and not 0; `R_WO` is a

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,9 @@ struct RepairChange {
 struct RepairedMesh {
   TriangleMesh mesh;                  ///< Mesh after the repair.
   std::vector<RepairChange> changes;  ///< Changes made.
+  /// Number in the mesh before the repair of the triangle from which each triangle was made; -1 for
+  /// the triangles of a filled hole.
+  std::vector<std::int32_t> origins = {};
 };
 
 /// Repairs faults that need little guessing, and reports guesses (filled holes). Accepts any mesh.

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/file/corner_values.h"
 #include "mesh/file/gltf/gltf_buffers.h"
 #include "mesh/file/mesh_parts.h"
 #include "mesh/file/read_in_child.h"
@@ -74,8 +75,11 @@ driver::Result<std::pair<std::string_view, std::string_view>> chunks_of(std::str
 class GltfReader {
  public:
   GltfReader(const Json& gltf, std::string_view chunk, const std::filesystem::path& folder,
-             std::string kind)
-      : gltf_(gltf), buffers_(gltf, chunk, folder), kind_(std::move(kind)) {}
+             std::string kind, MeshAttributes* attributes)
+      : gltf_(gltf),
+        buffers_(gltf, chunk, folder),
+        kind_(std::move(kind)),
+        attributes_(attributes) {}
 
   driver::Result<TriangleMesh> read(std::vector<std::string>& notes);
 
@@ -88,6 +92,7 @@ class GltfReader {
   struct Primitive {
     TriangleMesh mesh;
     bool single = false;
+    MeshAttributes attributes;
   };
 
   std::optional<Error> check_extensions() const;
@@ -97,6 +102,7 @@ class GltfReader {
                                      const std::vector<Affine3d>& places);
   std::optional<Error> add_targets(const Json& primitive, const Json& weights, Primitive& part);
   std::optional<Error> read_triangles(const Json& primitive, std::size_t mode, Primitive& part);
+  std::optional<Error> read_attributes(const Json& attributes, Primitive& part);
   driver::Result<std::vector<Affine3d>> instances(const Json& node, const Affine3d& place);
   driver::Result<Affine3d> place_of(const Json& node) const;
   Error damaged(const std::string& reason) const { return unreadable(kind_, reason); }
@@ -104,6 +110,7 @@ class GltfReader {
   const Json& gltf_;
   GltfBuffers buffers_;
   std::string kind_;
+  MeshAttributes* attributes_;
   MeshParts parts_;
   bool moves_ = false, lines_ = false, morphed_ = false;
 };
@@ -239,6 +246,7 @@ driver::Result<TriangleMesh> GltfReader::read(std::vector<std::string>& notes) {
   }
   auto mesh = parts_.take(notes);
   if (!mesh) return mesh;
+  if (attributes_ != nullptr) *attributes_ = parts_.take_attributes();
   const Json* const animations = json_member(gltf_, "animations");
   if (moves_ || (animations != nullptr && !animations->empty())) {
     notes.push_back("Bones and animations were ignored: the mesh is in its rest pose.");
@@ -343,8 +351,63 @@ std::optional<Error> GltfReader::add_primitive(const Json& primitive, const Json
     if (auto wrong = add_targets(primitive, *weights, part)) return wrong;
   }
   if (auto wrong = read_triangles(primitive, mode, part)) return wrong;
+  if (attributes_ != nullptr) {
+    if (auto wrong = read_attributes(*attributes, part)) return wrong;
+  }
   for (const Affine3d& place : places) {
-    if (auto added = parts_.add(part.mesh, place, part.single); !added) return added.error();
+    if (auto added = parts_.add(part.mesh, place, part.single, &part.attributes); !added) {
+      return added.error();
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> GltfReader::read_attributes(const Json& attributes, Primitive& part) {
+  // Reads an accessor with an element per vertex; no numbers if the primitive does not name it.
+  const auto read = [&](const char* name, std::initializer_list<std::size_t> columns,
+                        std::size_t& width) -> driver::Result<std::vector<double>> {
+    if (json_member(attributes, name) == nullptr) return std::vector<double>();
+    const auto accessor = json_index(attributes, name);
+    driver::Result<GltfNumbers> numbers(Error{"its accessor is not a number"});
+    for (const std::size_t one : columns) {
+      if (accessor && !numbers) numbers = buffers_.read(*accessor, width = one);
+    }
+    if (!numbers) return damaged(std::string(name) + ": " + numbers.error().message);
+    if (numbers->values.size() != width * part.mesh.vertices.size()) {
+      return damaged(std::string(name) + " and the positions differ in the number of vertices");
+    }
+    return std::move(numbers->values);
+  };
+  std::size_t width = 0;
+  const auto uv = read("TEXCOORD_0", {2}, width);
+  if (!uv) return uv.error();
+  // Written so that NaN is refused.
+  for (const double one : *uv) {
+    if (!(std::abs(one) <= kTextureCoordinateMax)) {
+      return damaged("TEXCOORD_0 has a value that is not a number between -1e6 and 1e6");
+    }
+  }
+  if (!uv->empty()) {
+    const auto of = [&](std::int32_t vertex) {
+      const double* const at = uv->data() + 2 * static_cast<std::size_t>(vertex);
+      // The first row of a picture is at v = 0 [Khronos, glTF 2.0, 3.8.3].
+      return Eigen::Vector2d(at[0], 1 - at[1]);
+    };
+    append_values<Eigen::Vector2d>(part.mesh.triangles, 0, of, part.attributes.uv);
+  }
+  const auto colours = read("COLOR_0", {3, 4}, width);
+  if (!colours) return colours.error();
+  for (const double one : *colours) {
+    if (!(one >= 0 && one <= 1)) {
+      return damaged("COLOR_0 has a value that is not a number from 0 to 1");
+    }
+  }
+  if (!colours->empty()) {
+    const auto of = [&](std::int32_t vertex) {
+      const double* const at = colours->data() + width * static_cast<std::size_t>(vertex);
+      return Eigen::Vector3d(at[0], at[1], at[2]);
+    };
+    append_values<Eigen::Vector3d>(part.mesh.triangles, 0, of, part.attributes.colours);
   }
   return std::nullopt;
 }
@@ -422,7 +485,8 @@ bool is_version_1(const Json& gltf) {
 }
 
 driver::Result<TriangleMesh> read_file(const std::string& bytes, const std::string& kind,
-                                       const std::filesystem::path& folder, MeshFileInfo& info) {
+                                       const std::filesystem::path& folder, MeshFileInfo& info,
+                                       MeshAttributes* attributes) {
   info.unit = 1;
   info.up = 'y';
   std::string_view text = bytes, chunk;
@@ -439,16 +503,18 @@ driver::Result<TriangleMesh> read_file(const std::string& bytes, const std::stri
   const Json gltf = Json::parse(text, nullptr, false);
   if (!gltf.is_object()) return unreadable(kind, "it is not JSON");
   if (is_version_1(gltf)) return import_by_assimp(bytes, kind, folder, info.notes);
-  return GltfReader(gltf, chunk, folder, kind).read(info.notes);
+  return GltfReader(gltf, chunk, folder, kind, attributes).read(info.notes);
 }
 
 }  // namespace
 
 driver::Result<TriangleMesh> read_gltf(const std::string& bytes, const std::string& kind,
-                                       const std::filesystem::path& folder, MeshFileInfo& info) {
+                                       const std::filesystem::path& folder, MeshFileInfo& info,
+                                       MeshAttributes* attributes) {
   if (bytes.empty()) return Error{"the file is empty."};
-  return read_in_child([&](MeshFileInfo& found) { return read_file(bytes, kind, folder, found); },
-                       kind, kGltfLimits, info);
+  return read_in_child(
+      [&](MeshFileInfo& found) { return read_file(bytes, kind, folder, found, attributes); }, kind,
+      kGltfLimits, info, attributes);
 }
 
 }  // namespace thimble::render

@@ -14,9 +14,11 @@ namespace thimble::render {
 /// there and below. Nodes, instances (EXT_mesh_gpu_instancing), quantized and sparse positions and
 /// the weights of morph targets are read; bones, animations, lines and points are omitted and
 /// reported. An unknown required extension is refused by name. Files of version 1 are read by
-/// Assimp. Not welded. The error is a sentence without the file's name. Real-time: never from the
-/// servo thread.
+/// Assimp. Not welded. If `attributes` is not null, it gets TEXCOORD_0 and COLOR_0; those of
+/// version 1 are not read. The error is a sentence without the file's name. Real-time: never from
+/// the servo thread.
 driver::Result<TriangleMesh> read_gltf(const std::string& bytes, const std::string& kind,
-                                       const std::filesystem::path& folder, MeshFileInfo& info);
+                                       const std::filesystem::path& folder, MeshFileInfo& info,
+                                       MeshAttributes* attributes = nullptr);
 
 }  // namespace thimble::render
