@@ -7,9 +7,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 
+#include "log/logger.h"
 #include "support/scratch.h"
+#include "thimble/scene/simulated_device.h"
 
 namespace thimble::bringup {
 namespace {
@@ -82,6 +85,30 @@ TEST_F(HeatKeeperTest, CorruptFileIsTreatedAsHot) {
     EXPECT_EQ(known.heat, kHot) << text;
     EXPECT_NE(known.note.find("is not a valid record"), std::string::npos) << text;
   }
+}
+
+TEST_F(HeatKeeperTest, WarnsOfEachRecordThatCannotBeSavedOnly) {
+  const auto log = support::scratch_folder() / "heat.log";
+  ASSERT_TRUE(scene::begin_log({.file = log}));
+  const auto warnings = [&log] {
+    std::ifstream lines(log);
+    int count = 0;
+    for (std::string line; std::getline(lines, line);) {
+      count += line.find("Cannot save the motor temperatures") != std::string::npos ? 1 : 0;
+    }
+    return count;
+  };
+  auto arm = scene::SimulatedDevice::open("vintage_phantom", {{0.0, {0, 0, 0}}, {1.0, {0, 0, 0}}});
+  ASSERT_TRUE(arm) << arm.error().message;
+  { const scene::HeatKeeper keeper("kept", (*arm)->device()); }
+  EXPECT_EQ(warnings(), 0);
+  const auto occupied = support::scratch_folder() / "no_folder";
+  std::ofstream(occupied) << "a file";
+  setenv("XDG_STATE_HOME", occupied.c_str(), 1);
+  auto keeper = std::make_unique<scene::HeatKeeper>("kept", (*arm)->device());
+  EXPECT_EQ(warnings(), 1) << "at the start";
+  keeper.reset();
+  EXPECT_EQ(warnings(), 2) << "and at the end";
 }
 
 }  // namespace

@@ -82,5 +82,12 @@ TEST_F(SleepLockTest, DoesNotWaitForAHangingProgram) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }
 
+TEST_F(SleepLockTest, EndsAProgramThatIgnoresItsSignal) {
+  stand_in("trap '' TERM\nexec sleep 60\n");
+  const auto begin = std::chrono::steady_clock::now();
+  { const SleepLock lock; }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+}
+
 }  // namespace
 }  // namespace thimble::scene

@@ -197,6 +197,28 @@ TEST_F(OutputFileTest, OwnerOnlyHoldsFromCreationForAnyUmask) {
   EXPECT_EQ(mode_of(output->part()), 0600U);
 }
 
+TEST_F(OutputFileTest, NewFileIsReadableAndWritableWithinTheUmask) {
+  const mode_t before = ::umask(0);
+  const auto written = write_file(folder_ / "a.csv", kTable, kNewTable);
+  ::umask(before);
+  ASSERT_TRUE(written);
+  EXPECT_EQ(mode_of(folder_ / "a.csv"), 0666U);
+}
+
+TEST_F(OutputFileTest, EmptyFileIsPlainText) {
+  EXPECT_TRUE(kPlainText.matches(file("empty.txt", "")));
+  EXPECT_FALSE(kPlainText.matches(file("zero.txt", std::string(1, '\0'))));
+}
+
+TEST_F(OutputFileTest, PipeStaysAfterAnAbandonedOutput) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  { ASSERT_TRUE(OutputFile::open(pipe, kTable)); }
+  ::close(reader);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
 TEST_F(OutputFileTest, ReplacedFileKeepsItsMode) {
   const fs::path path = file("a.csv", kOldTable);
   ::chmod(path.c_str(), 0640);

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <numbers>
 #include <sstream>
 #include <string>
 
@@ -268,6 +270,90 @@ TEST(ArmFile, RejectsUnsafeLimitsWithTheirLine) {
   EXPECT_EQ(mistake_with("soft_start: 0.3", "soft_start: 0.05"), "");
   EXPECT_EQ(mistake_with("watchdog: 0.1 ", "watchdog: 1 "), "");
   EXPECT_EQ(mistake_with("rise_max: 2000", "rise_max: 1e5"), "");
+}
+
+// Each key of one number or three, with its smallest and largest value. The text before the value
+// and after it places it in the file. Other mistakes, such as a contradiction of two keys, are
+// irrelevant here.
+TEST(ArmFile, AcceptsEachNumberUpToItsLimitsOnly) {
+  struct Limits {
+    const char *piece, *before, *after;
+    double min, max;
+  };
+  const Limits all[] = {
+      {"height: 0 ", "height: ", " ", -1, 1},
+      {"length_b: 0.138", "length_b: ", "", 0.01, 1},
+      {"length_c: 0.112", "length_c: ", "", 0.01, 1},
+      {"ratio: [9.0, 7.7, 7.7]", "ratio: [9, ", ", 9]", 1, 1000},
+      {"torque_constant: [0.0234, 0.0234, 0.0234]", "torque_constant: [1, 1, ", "]", 1e-4, 10},
+      {"current_max: [3, 3, 3]", "current_max: [", ", 3, 3]", 0.01, 32},
+      {"continuous_current: [0.91, 1.07, 0.87]", "continuous_current: [1, ", ", 1]", 0.01, 32},
+      {"thermal_time_constant: [60, 60, 60]", "thermal_time_constant: [", ", 60, 60]", 1, 1e5},
+      {"min: [-0.1, -0.1, -0.1]", "min: [", ", 0, 0]", -2, 2},
+      {"max: [0.1, 0.1, 0.1]", "max: [0, ", ", 0]", -2, 2},
+      {"force: 5 ", "force: ", " ", 0.01, 100},
+      {"stiffness: 800", "stiffness: ", "", 1, 1e5},
+      {"damping: 8 ", "damping: ", " ", 0, 1000},
+      {"continuous_force: 1.4", "continuous_force: ", "", 0, 100},
+      {"force_max: 5 ", "force_max: ", " ", 0.01, 100},
+      {"speed_max: 3 ", "speed_max: ", " ", 0.01, 20},
+      {"stall: 0.02", "stall: ", "", 0.001, 10},
+      {"power_max: 1 ", "power_max: ", " ", 0.01, 20},
+      {"power_time: 2 ", "power_time: ", " ", 0.1, 10},
+      {"  power_max:", "  reopen: ", "\n  power_max:", 0.001, 10},
+      {"  power_max:", "  hold_unchanged: ", "\n  power_max:", 0.05, 600},
+      {"  power_max:", "  tip_mass: ", "\n  power_max:", 1e-3, 10},
+      {"  power_max:", "  energy_allowance: ", "\n  power_max:", 0, 1},
+      {"  power_max:", "  energy_reservoir: ", "\n  power_max:", 1e-6, 10},
+      {"  power_max:", "  energy_slope: ", "\n  power_max:", 0.1, 1e6},
+  };
+  for (const Limits& key : all) {
+    const auto is_refused = [&key](double value) {
+      std::ostringstream text;
+      text.precision(12);
+      text << key.before << value << key.after;
+      return mistake_with(key.piece, text.str()).find(": expected a number from ") !=
+             std::string::npos;
+    };
+    EXPECT_FALSE(is_refused(key.min)) << key.before << key.min;
+    EXPECT_FALSE(is_refused(key.max)) << key.before << key.max;
+    EXPECT_TRUE(is_refused(key.min - 1e-6 * std::abs(key.max))) << key.before << " below";
+    EXPECT_TRUE(is_refused(key.max + 1e-6 * std::abs(key.max))) << key.before << " above";
+  }
+}
+
+TEST(ArmFile, NamesAnUnknownKeyInEachSection) {
+  for (const char* section : {"geometry", "joints", "base", "workspace", "declared", "gate"}) {
+    const std::string head = std::string("\n") + section + ":";
+    EXPECT_NE(mistake_with(head, "\nzone_of_" + head.substr(1)).find("zone_of_"), std::string::npos)
+        << section;
+    std::string text = content();
+    const std::size_t line = text.find('\n', text.find(head) + 1);
+    const std::size_t next = text.find('\n', line + 1);
+    const std::string first = text.substr(line, next - line);
+    EXPECT_NE(mistake_with(first, first + "\n  unknown_key: 1").find("unknown_key"),
+              std::string::npos)
+        << section;
+  }
+}
+
+// An arm that reports every millisecond, in a loop of 800 Hz: its reports wait 0, 0.25, 0.5 and
+// 0.75 ms for their ticks, in turn.
+TEST(ArmFile, LoopDelayIncludesTheWaitOfReportsForTheirTicks) {
+  const auto arm = scene::load_arm(kArm);
+  ASSERT_TRUE(arm.ok());
+  const LoopTimes times = loop_pace(*arm, 800);
+  EXPECT_DOUBLE_EQ(times.delay, 0.001 + 0.000375);
+  EXPECT_DOUBLE_EQ(times.period, 0.00125);
+}
+
+// A low-pass filter of corner frequency f multiplies a step of the velocity by 1 - exp(-2 pi f T).
+TEST(ArmFile, SpeedFloorIsThatOfTheFilteredVelocity) {
+  scene::ArmFile arm = *scene::load_arm(kArm);
+  const double filtered = scene::energy_settings(arm, 1000, {}).speed_floor;
+  arm.velocity_corner_frequency = 0;
+  const double unfiltered = scene::energy_settings(arm, 1000, {}).speed_floor;
+  EXPECT_NEAR(filtered / unfiltered, 1 - std::exp(-2 * std::numbers::pi * 100 * 0.001), 1e-14);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "hand/place_text.h"
 #include "hand/sphere_tree.h"
 #include "hand/surface_probe.h"
+#include "hand/surface_route.h"
 #include "mesh/closest_point.h"
 #include "support/meshes/shapes.h"
 #include "support/seed.h"
@@ -224,6 +225,32 @@ TEST(HandRoute, GoesOverTheEdgesOfACube) {
     ASSERT_TRUE(route.ok()) << route.error().message;
     expect_on_surface(*route, cube, 0.004, "cube");
     EXPECT_LT((route->back().second - goal).norm(), 0.004);
+  }
+}
+
+TEST(HandRoute, BeginsADetourThroughSpaceAtTheTarget) {
+  render::TriangleMesh two = support::box(Vector3d::Constant(0.01));
+  const render::TriangleMesh other = two;
+  for (const Vector3d& p : other.vertices) two.vertices.push_back(p + Vector3d(0.06, 0, 0));
+  for (const auto& [a, b, c] : other.triangles) two.triangles.push_back({a + 8, b + 8, c + 8});
+  const auto route =
+      plan_on_sphere({on(0, {0, 0, 0.01}, 0.001), on(1, {0.06, 0, 0.01}, 0.001)}, two);
+  ASSERT_TRUE(route.ok()) << route.error().message;
+  // A hand that starts from rest has moved less than 0.1 mm after 2 % of its time.
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_LT(((*route)[i].second - Vector3d(0, 0, 0.009)).norm(), 1e-4) << i;
+  }
+}
+
+TEST(SurfaceRoute, PathIsCloselySpaced) {
+  const render::TriangleMesh cube = support::box(Vector3d::Constant(0.03));
+  SurfaceProbe probe(cube);
+  SurfaceRoute route(cube, probe);
+  const std::vector<Vector3d> path = route.over_surface({0, 0, 0.03}, {0, 0, -0.03});
+  ASSERT_GT(path.size(), 2U);
+  const double size = 2 * 0.03 * std::sqrt(3.0);
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    EXPECT_LT((path[i] - path[i - 1]).norm(), size / 50) << i;
   }
 }
 

@@ -4,7 +4,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include <fstream>
+#include <vector>
 
+#include "files/scene_inputs.h"
 #include "support/scratch.h"
 #include "text_file.h"
 #include "thimble/scene/scene_file.h"
@@ -132,6 +134,21 @@ TEST(CopiedScene, RunsAnywhereIfItCameWithThimble) {
                 fs::weakly_canonical(original->objects[i].mesh_file));
     }
   }
+}
+
+TEST(SceneInputs, AreAllFilesThatALineNames) {
+  const fs::path folder = support::scratch_folder() / "scene_inputs";
+  fs::create_directories(folder);
+  for (const char* name : {"arm.yaml", "ball.off", "height map.png"}) {
+    std::ofstream(folder / name) << "content";
+  }
+  std::ofstream(folder / "scene.yaml") << "arm: arm.yaml\nmesh: height map.png\n"
+                                          "objects: [{mesh: absent.off, map: ball.off}]\n";
+  std::vector<fs::path> expected;
+  for (const char* name : {"scene.yaml", "arm.yaml", "height map.png", "ball.off"}) {
+    expected.push_back(folder / name);
+  }
+  EXPECT_EQ(scene_inputs(folder / "scene.yaml"), expected);
 }
 
 }  // namespace

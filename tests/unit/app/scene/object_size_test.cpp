@@ -5,7 +5,11 @@
 #include <filesystem>
 #include <string>
 
-#include "meshes/object_mesh.h"
+#include "compact_mesh/packed_surface.h"
+#include "disk_paging/page_file.h"
+#include "mesh/contact_mesh.h"
+#include "support/meshes/shapes.h"
+#include "support/scratch.h"
 #include "thimble/scene/scene_objects.h"
 
 namespace thimble::scene {
@@ -100,6 +104,18 @@ TEST(ObjectMesh, ReportsPartsThatWereInsideOut) {
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
   ASSERT_EQ(mesh->notes.size(), 1U);
   EXPECT_NE(mesh->notes[0].find("12 triangles were reversed"), std::string::npos) << mesh->notes[0];
+}
+
+TEST(ObjectSize, OfPagesIsTheirLargestSideInTheWorld) {
+  const auto mesh = render::ContactMesh::build(support::box({0.01, 0.02, 0.005}));
+  ASSERT_TRUE(mesh);
+  const auto path = support::scratch_folder() / "sides.pages";
+  const auto surface = render::PackedSurface::build(*mesh);
+  ASSERT_TRUE(surface) << surface.error().message;
+  ASSERT_TRUE(render::write_page_file(*surface, path));
+  const auto file = render::PageFile::open(path);
+  ASSERT_TRUE(file) << file.error().message;
+  EXPECT_NEAR(side_of_pages(*file, {.scale = 3}), 3 * 0.04, 1e-6);
 }
 
 }  // namespace

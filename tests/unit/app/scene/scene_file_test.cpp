@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <fstream>
 #include <map>
+#include <sstream>
 #include <string>
 
 #include "support/scratch.h"
@@ -451,6 +452,28 @@ TEST(SceneFile, ReportsMistakesInShapesAndFields) {
                   "[{amplitude: 0.004, wavelength: 0.1}]}]")
                 .find("5 N press only 6.25 mm deep"),
             std::string::npos);
+}
+
+TEST(SceneFile, AcceptsEachNumberOfTheGripUpToItsLimitsOnly) {
+  struct Limits {
+    const char* key;
+    double max;
+  };
+  for (const Limits& limits : {Limits{"mass", 10}, Limits{"stiffness", 1e5},
+                               Limits{"damping", 1000}, Limits{"tremor", 0.01}}) {
+    const auto found = [&limits](double value) {
+      std::ostringstream grip;
+      grip.precision(12);
+      grip << "  grip: {" << limits.key << ": " << value << "}\n";
+      return mistake("  - {name: ball, sphere: {radius: 0.01}, stiffness: 500}\n",
+                     kWait + grip.str());
+    };
+    const std::string expected = std::string(limits.key) + ": expected a number from 0 to ";
+    EXPECT_EQ(found(0), "") << limits.key;
+    EXPECT_EQ(found(limits.max), "") << limits.key;
+    EXPECT_NE(found(-1e-6 * limits.max).find(expected), std::string::npos) << limits.key;
+    EXPECT_NE(found(limits.max * (1 + 1e-6)).find(expected), std::string::npos) << limits.key;
+  }
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -180,6 +182,84 @@ TEST(SimulationSection, RefusesADriveTrainOfTheFalcon) {
   EXPECT_NE(mistake_with("  tip:\n", "  drive_train: {current_lag: 0.001}\n  tip:\n", "falcon")
                 .find("drive_train: cannot be used with shape: falcon"),
             std::string::npos);
+}
+
+TEST(SimulationSection, AcceptsEachNumberUpToItsLimitsOnly) {
+  struct Limits {
+    const char *piece, *before, *after;
+    double min, max;
+  };
+  const Limits all[] = {
+      {"    mass: 0.075", "    mass: ", "", 1e-3, 10},
+      {"viscous: 0.005", "viscous: ", "", 0, 100},
+      {"    coulomb: 0.04", "    coulomb: ", "", 0, 10},
+      {"    coulomb: 0.04", "    weight: ", "\n    coulomb: 0.04", 0, 10},
+      {"current_max: 6 ", "current_max: ", " ", 0.01, 32},
+      {"report_period: 0.001", "report_period: ", "", 1e-5, 0.1},
+      {"watchdog: 0.1 s", "watchdog: ", " ", 1e-3, 10},
+      {"current_range: 6 ", "current_range: ", " ", 0.01, 32.767},
+      {"delay_in: 0 ", "delay_in: ", " ", 0, 1},
+      {"delay_out: 0.001", "delay_out: ", "", 0, 1},
+      {"delay_in: 0 ", "jitter: ", "\n    delay_in: 0 ", 0, 1},
+      {"delay_in: 0 ", "loss: ", "\n    delay_in: 0 ", 0, 0.99},
+      {"    mass: 0.025", "    mass: ", "", 0, 10},
+      {"    stiffness: 300", "    stiffness: ", "", 0, 1e5},
+      {"    damping: 3 ", "    damping: ", " ", 0, 1000},
+      {"tremor_amplitude: 0.00005", "tremor_amplitude: ", "", 0, 0.01},
+      {"tremor_frequency: 10", "tremor_frequency: ", "", 0.1, 100},
+  };
+  for (const Limits& key : all) {
+    const auto is_refused = [&key](double value) {
+      std::ostringstream text;
+      text.precision(12);
+      text << key.before << value << key.after;
+      return mistake_with(key.piece, text.str()).find(": expected a number from ") !=
+             std::string::npos;
+    };
+    EXPECT_FALSE(is_refused(key.min)) << key.before << key.min;
+    EXPECT_FALSE(is_refused(key.max)) << key.before << key.max;
+    EXPECT_TRUE(is_refused(key.min - 1e-6 * key.max)) << key.before << " below";
+    EXPECT_TRUE(is_refused(key.max + 1e-6 * key.max)) << key.before << " above";
+  }
+}
+
+TEST(SimulationSection, AcceptsPeriodsOfTheGimbalUpToItsLimits) {
+  const auto mistake = [](const std::string& period) {
+    return mistake_with("period: 3", "period: " + period, "polhem");
+  };
+  EXPECT_EQ(mistake("0.05"), "");
+  EXPECT_EQ(mistake("100"), "");
+  for (const char* beyond : {"0.0499", "100.1"}) {
+    EXPECT_NE(mistake(beyond).find("period: expected a number from 0.05 to 100 s"),
+              std::string::npos)
+        << beyond;
+  }
+}
+
+TEST(SimulationSection, NamesAnUnknownKeyInEachPart) {
+  for (const char* part : {"tip", "motors", "firmware", "wire", "hand"}) {
+    const std::string head = std::string("\n  ") + part + ":";
+    std::ostringstream content;
+    content << std::ifstream(std::string(THIMBLE_SOURCE_DIR) + "/app/arms/vintage_phantom.yaml")
+                   .rdbuf();
+    const std::string text = content.str();
+    const std::size_t begin = text.find(head);
+    const std::size_t line = text.find('\n', begin + 1);
+    const std::string opening = text.substr(begin, line - begin);
+    EXPECT_NE(mistake_with(opening, opening + "\n    unknown_key: 1").find("unknown_key"),
+              std::string::npos)
+        << part;
+  }
+}
+
+TEST(SimulationSection, CountsTheJointsOfItsWiringFromOne) {
+  const auto arm = read_with(
+      {{"  encoders: quantised",
+        "  wiring: {encoder_of: [3, 1, 2], motor_of: [2, 3, 1]}\n  encoders: quantised"}});
+  ASSERT_TRUE(arm.ok()) << arm.error().message;
+  const device_sim::WiringSettings& wiring = arm->simulated.firmware.wiring;
+  EXPECT_EQ(wiring.encoder_of, (std::array<std::uint8_t, 3>{2, 0, 1}));
+  EXPECT_EQ(wiring.motor_of, (std::array<std::uint8_t, 3>{1, 2, 0}));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -38,6 +39,21 @@ TEST(Trajectory, ReadsColumnsInAnyOrderAndUnit) {
   EXPECT_NEAR(session::trajectory_at(*read, 0.25, hint).p.x(), 0.0305, 1e-12);
   EXPECT_EQ(session::trajectory_at(*read, 9, hint).p, (*read)[1].p);
   EXPECT_EQ(session::trajectory_at(*read, -1, hint).p, (*read)[0].p);
+}
+
+TEST(Trajectory, AnyHintGivesTheSamePoint) {
+  const std::vector<session::TrajectoryPoint> points{{.time = 0, .p = {0, 0, 0}},
+                                                     {.time = 1, .p = {1, 0, 0}},
+                                                     {.time = 2, .p = {1, 4, 0}},
+                                                     {.time = 3, .p = {1, 4, 9}}};
+  for (std::size_t from = 0; from < 6; ++from) {
+    for (const double time : {0.5, 1.0, 1.5, 2.5}) {
+      std::size_t hint = from, none = 0;
+      EXPECT_EQ(session::trajectory_at(points, time, hint).p,
+                session::trajectory_at(points, time, none).p)
+          << from << ", " << time;
+    }
+  }
 }
 
 TEST(Trajectory, ErrorsNameLineAndRemedy) {
@@ -141,6 +157,46 @@ TEST(Trajectory, AcceptsTheFrameOfAMeshOrOfTheWorld) {
                                       {.farthest = 1e9}, "nothing", scene_file);
   ASSERT_FALSE(nowhere);
   EXPECT_NE(nowhere.error().message.find("--frame"), std::string::npos);
+}
+
+// The recorded forces rotate with the frame: a rotated object gives the same comparison.
+TEST(Trajectory, ForcesAreInTheFrameOfTheMesh) {
+  const std::filesystem::path folder = support::scratch_folder() / "rotated";
+  std::filesystem::create_directories(folder);
+  const auto compared = [&folder](const std::string& rotation) {
+    const auto file = folder / "cube.yaml";
+    std::ofstream(file) << "name: cube\narm: vintage_phantom\nduration: 1\nobjects:\n"
+                           "  - {name: cube, mesh: \"" THIMBLE_SOURCE_DIR
+                           "/tests/data/meshes/box.off\", size: 0.04, stiffness: 500, "
+                           "rotate_degrees: " +
+                               rotation +
+                               "}\nhand: {path: [{t: 0, at: [0, 0, 0.05]}, "
+                               "{t: 1, at: [0, 0, 0.05]}]}\n";
+    const auto scene = scene::load_scene(file);
+    EXPECT_TRUE(scene) << scene.error().message;
+    const auto mesh = render::load_mesh(scene->objects.front().mesh_file);
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& vertex : mesh->vertices) box.extend(vertex);
+    std::string text;
+    for (int i = 0; i <= 100; ++i) {
+      const Eigen::Vector3d p =
+          box.center() + box.sizes().z() * Eigen::Vector3d(0.1, 0.07, 1 - 0.006 * i);
+      char line[200];
+      std::snprintf(line, sizeof line, "%.3f %.17g %.17g %.17g 0 0 1\n", 1e-3 * i, p.x(), p.y(),
+                    p.z());
+      text += line;
+    }
+    const auto replay = session::replay_trajectory_file(
+        file_of(text), {.columns = "t x y z fx fy fz"}, "cube", file);
+    EXPECT_TRUE(replay) << replay.error().message;
+    return replay->compared;
+  };
+  const auto upright = compared("[]"), lying = compared("[[x, 90]]");
+  EXPECT_GT(upright.touching, 5U);
+  EXPECT_GT(upright.directions, 5U);
+  EXPECT_EQ(lying.directions, upright.directions);
+  EXPECT_NEAR(lying.error_rms, upright.error_rms, 1e-9);
+  EXPECT_NEAR(lying.direction_p99, 0, 1e-6);
 }
 
 }  // namespace

@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <ctime>
+#include <optional>
 #include <string>
+
+#include "yaml/key_log.h"
+#include "yaml/yaml_words.h"
 
 namespace thimble::scene {
 namespace {
@@ -176,6 +180,11 @@ TEST(YamlReader, KeepsTheFirstFiveMistakesAndCountsTheRest) {
   EXPECT_TRUE(said.ends_with("\n2 more mistakes follow.")) << said;
 }
 
+TEST(YamlReader, CountsASingleFurtherMistakeInTheSingular) {
+  const std::string said = mistakes_in("stiffness: 1\nq1: 1\nq2: 1\nq3: 1\nq4: 1\nq5: 1\nq6: 1\n");
+  EXPECT_TRUE(said.ends_with("\n1 more mistake follows.")) << said;
+}
+
 TEST(YamlReader, ReportsAMissingFile) {
   const auto file = scene::YamlFile::load("no/such/file.yaml");
   ASSERT_FALSE(file.ok());
@@ -200,6 +209,14 @@ TEST(YamlWhole, ReadsEveryFormOfAWholeNumber) {
   for (const std::string value : {"1", "+7", "7.0", "1e3", "0007", "9007199254740992"}) {
     EXPECT_EQ(whole_mistakes_in("seed: " + value + "\n"), "") << value;
   }
+}
+
+// Beyond 2^53 two different texts could mean the same double.
+TEST(YamlWhole, IsExactUpToTwoToThe53) {
+  EXPECT_EQ(to_whole("9007199254740992"), std::int64_t{1} << 53);
+  EXPECT_EQ(to_whole("-9007199254740992"), -(std::int64_t{1} << 53));
+  EXPECT_EQ(to_whole("9007199254740993"), std::nullopt);
+  EXPECT_EQ(to_whole("-9007199254740993"), std::nullopt);
 }
 
 TEST(YamlWhole, RejectsOtherValuesWithOneMessage) {
@@ -281,6 +298,36 @@ TEST(YamlReader, NeverThrowsOnCutOrScrambledFiles) {
       EXPECT_NO_THROW(mistakes_in(scrambled)) << size << ' ' << c;
     }
   }
+}
+
+TEST(YamlReader, NotesTheLimitsOfARequiredNumber) {
+  KeyLog log;
+  auto file = scene::YamlFile::parse("mass: 1\n", "arm.yaml", &log);
+  ASSERT_TRUE(file);
+  file->root().require_number("mass", "kg", 0.5, 10);
+  ASSERT_EQ(log.notes().size(), 1U);
+  EXPECT_EQ(log.notes()[0].values.min, 0.5);
+  EXPECT_EQ(log.notes()[0].values.max, 10);
+  EXPECT_EQ(log.notes()[0].need, KeyNeed::kRequired);
+}
+
+TEST(YamlReader, NotesTheDefaultOfThreeNumbers) {
+  KeyLog log;
+  auto file = scene::YamlFile::parse("a: 1\n", "arm.yaml", &log);
+  ASSERT_TRUE(file);
+  file->root().optional_vector3("place", {1, 2, 3}, "m", -5, 5);
+  ASSERT_EQ(log.notes().size(), 1U);
+  EXPECT_EQ(need_in_words(log.notes()[0]), "default [1, 2, 3]");
+}
+
+TEST(YamlReader, NotesAKeyThatIsLookedForAsOptional) {
+  KeyLog log;
+  auto file = scene::YamlFile::parse("mass: 1\n", "arm.yaml", &log);
+  ASSERT_TRUE(file);
+  ASSERT_TRUE(file->root().has("mass"));
+  file->root().require_number("mass", "kg", 0.5, 10);
+  ASSERT_EQ(log.notes().size(), 1U);
+  EXPECT_EQ(log.notes()[0].need, KeyNeed::kOptional);
 }
 
 }  // namespace

@@ -109,9 +109,14 @@ TEST(YamlText, OtherMistakesKeepTheirSentence) {
 }
 
 TEST(YamlText, CutsFoundTextsBetweenCharacters) {
-  std::string text = "rate: ";
-  for (int i = 0; i < 30; ++i) text += "\xe2\x82\xac";
-  EXPECT_FALSE(find_invalid_utf8(mistakes_of_text(text + "\n")));
+  // Characters whose last byte is even and odd, begun at each of three bytes.
+  for (const char* character : {"\xe2\x82\xac", "\xe2\x82\xad", "\xe2\x83\x83"}) {
+    for (const char* begin : {"", "a", "ab"}) {
+      std::string text = std::string("rate: ") + begin;
+      for (int i = 0; i < 30; ++i) text += character;
+      EXPECT_FALSE(find_invalid_utf8(mistakes_of_text(text + "\n"))) << character << begin;
+    }
+  }
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <regex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "log/logger.h"
@@ -121,6 +122,23 @@ TEST_F(EventLogTest, RealTimeEventsKeepTheirTime) {
   EXPECT_EQ(lines[2].rfind("info tick 0, ", 0), 0u) << lines[2];
   EXPECT_EQ(lines.back(), "info The run is over; the arm accepted zero force.");
   EXPECT_GT(passed, std::chrono::milliseconds(290));
+}
+
+TEST_F(EventLogTest, RealTimeEventsAreLoggedDuringTheRun) {
+  options_.clock = ClockKind::kWall;
+  options_.duration = 30;
+  auto session = open();
+  ASSERT_TRUE(session);
+  std::thread servo([&] { session->run(stop_); });
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  bool logged = false;
+  while (!logged && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    for (const std::string& line : log()) logged |= line.rfind("info tick 0, ", 0) == 0;
+  }
+  EXPECT_TRUE(logged);
+  stop_.store(true);
+  servo.join();
 }
 
 TEST_F(EventLogTest, DoesNotChangeForces) {

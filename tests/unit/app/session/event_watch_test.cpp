@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <numeric>
 #include <thread>
 #include <vector>
 
 #include "events/event_words.h"
 #include "support/heap_guard.h"
+#include "thimble/scene/simulated_device.h"
 
 namespace thimble::session {
 namespace {
@@ -376,6 +378,29 @@ TEST_F(EventWatchTest, KeepsTheStrongestForceOfAWall) {
   EXPECT_EQ(events(), Events({first, last}));
 }
 
+TEST_F(EventWatchTest, ComparesForcesOfWallsByTheirNorm) {
+  // Each is stronger than the one before it.
+  const std::array<std::array<double, 3>, 4> rising{{{0, 1, 0}, {2, 0, 0}, {0, 0, -3}, {2, 2, 2}}};
+  for (const auto& force : rising) {
+    counters_.wall_W = force;
+    ++counters_.of(Activity::kWall);
+    tick();
+  }
+  ticks(200);
+  const auto got = events();
+  ASSERT_EQ(got.size(), 2U);
+  EXPECT_EQ(got.back().f_wall_W, rising.back());
+  for (std::size_t i = 0; i + 1 < rising.size(); ++i) {
+    for (const std::size_t k : {i, i + 1, i}) {
+      counters_.wall_W = rising[k];
+      ++counters_.of(Activity::kWall);
+      tick();
+    }
+    ticks(200);
+    EXPECT_EQ(events().back().f_wall_W, rising[i + 1]) << i;
+  }
+}
+
 TEST_F(EventWatchTest, ResetsTheWallForceForANewEpisode) {
   for (const double force : {3.0, 1.0}) {
     counters_.wall_W = {force, 0, 0};
@@ -411,6 +436,27 @@ TEST(EventWords, NameTheStageThatChangedAForce) {
     EXPECT_NE(words.find("30 %"), std::string::npos) << words;
     EXPECT_EQ(words.find("A stage of the gate"), std::string::npos) << words;
   }
+}
+
+TEST(DeviceCounters, CountStallsOfTheLoop) {
+  auto opened =
+      scene::SimulatedDevice::open("vintage_phantom", {{0.0, {0, 0, 0}}, {1.0, {0, 0, 0}}});
+  ASSERT_TRUE(opened) << opened.error().message;
+  const DeviceCounters counters((*opened)->device());
+  const auto stalls = [&counters] {
+    return counters.activities()[static_cast<std::size_t>(Activity::kStall)];
+  };
+  ASSERT_TRUE((*opened)->device().activate());
+  // A tick takes three times as long as the loop may be late.
+  driver::VirtualClock& clock = (*opened)->clock();
+  auto law = [&clock](const driver::DeviceState& state) noexcept {
+    if (state.tick == 10) clock.sleep_until_ns(clock.now_ns() + 60'000'000);
+    return driver::ForceCommand();
+  };
+  auto sink = [](const driver::TickRecord&) noexcept {};
+  EXPECT_EQ(stalls(), 0U);
+  (*opened)->run(0.2, law, sink);
+  EXPECT_EQ(stalls(), 1U);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "share/shared_reader.h"
 #include "share/shared_run.h"
 #include "share/steer/file_watch.h"
+#include "share/viewer_request_handler.h"
 #include "speed_clock.h"
 #include "support/run_hash.h"
 #include "support/scratch.h"
@@ -193,6 +194,43 @@ TEST_F(NextRunTest, RunsAnotherSceneOrReportsTheError) {
   const auto honey = next.take(driver::ServoEnd::kStopped, false);
   ASSERT_TRUE(honey);
   EXPECT_EQ(honey->scene().name, "honey");
+}
+
+TEST_F(NextRunTest, RunThatWasTakenOverIsNotServed) {
+  NextRun next = next_of();
+  const auto session = prepare();
+  next.begin(*session);
+  ASSERT_TRUE(view(*session)->ask_restart());
+  next.step(false);
+  ASSERT_TRUE(next.take(driver::ServoEnd::kStopped, false));
+  // There is no session to serve before `begin`, so there is none to take either.
+  EXPECT_FALSE(next.take(driver::ServoEnd::kDone, false));
+  EXPECT_EQ(view(*session)->notice(), "");
+}
+
+TEST_F(NextRunTest, HandlerWithoutANextRunServesRecordings) {
+  const auto session = prepare();
+  ViewerRequestHandler handler(*session, nullptr, false);
+  handler.step();
+  EXPECT_FALSE(handler.ended());
+  handler.close();
+  EXPECT_EQ(view(*session)->notice(), "") << "nobody asked for a recording";
+}
+
+TEST_F(NextRunTest, RecordingAskedForAfterTheRunIsReported) {
+  const auto session = prepare();
+  ViewerRequestHandler handler(*session, nullptr, false);
+  const auto viewer = view(*session);
+  ASSERT_TRUE(viewer->ask_record());
+  handler.close();
+  EXPECT_NE(viewer->notice().find("No recording was started"), std::string::npos);
+}
+
+TEST_F(NextRunTest, ViewersKeepTheLastEightSeconds) {
+  const auto session = prepare();
+  const auto& head =
+      *reinterpret_cast<const SharedHead*>(session->shared()->memory().bytes().data());
+  EXPECT_EQ(head.ring.count, 8 * static_cast<std::uint64_t>(session->scene().rate));
 }
 
 TEST_F(NextRunTest, KeepsRequestsMadeDuringPreparation) {

@@ -3,7 +3,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,12 +15,16 @@
 #include "observers/pose_record.h"
 #include "observers/trace.h"
 #include "recording/recording_switch.h"
+#include "share/knob_requests.h"
+#include "share/live_knobs.h"
 #include "share/run_sharing.h"
 #include "share/shared_reader.h"
 #include "support/heap_guard.h"
 #include "support/scratch.h"
 #include "support/scripted_run.h"
 #include "thimble/render/object_touch.h"
+#include "thimble/scene/scene_file.h"
+#include "thimble/scene/scene_objects.h"
 #include "thimble/session/recording.h"
 #include "thimble/session/run_statistics.h"
 
@@ -237,6 +243,34 @@ TEST(Observers, AllocateNothingPerTick) {
             0);
   EXPECT_EQ(statistics.ticks(), 1000u);
   EXPECT_TRUE(recording.stop());
+}
+
+/// Requests a value of the first knob, and keeps the values that are in force.
+class Requests final : public session::KnobRequests {
+ public:
+  std::optional<double> knob_wanted(std::size_t knob) const noexcept override {
+    return knob == 0 ? std::optional(wanted) : std::nullopt;
+  }
+  void store_knob(std::size_t, double now) noexcept override { stored.push_back(now); }
+  double wanted = 0;
+  std::vector<double> stored;
+};
+
+TEST(LiveKnobs, StoreEachValueOnTheWayToTheTarget) {
+  const auto scene = scene::load_scene(std::string(THIMBLE_SOURCE_DIR) + "/app/scenes/rubber.yaml");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto objects = scene::SceneObjects::build(*scene);
+  ASSERT_TRUE(objects) << objects.error().message;
+  session::LiveKnobs knobs(*scene, (*objects)->touch());
+  const auto described = knobs.described();
+  ASSERT_FALSE(described.empty());
+  Requests requests;
+  requests.wanted = described[0].initial / 2;
+  for (int tick = 0; tick < 3; ++tick) {
+    ASSERT_TRUE(knobs.step(requests, {}, 1e-3));
+    ASSERT_EQ(requests.stored.size(), static_cast<std::size_t>(tick) + 1);
+    EXPECT_EQ(requests.stored.back(), knobs.value(0));
+  }
 }
 
 }  // namespace

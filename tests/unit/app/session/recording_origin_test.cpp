@@ -211,6 +211,14 @@ TEST(RecordingOrigin, ClaimsNoMoreTicksThanItStores) {
   }
 }
 
+// As few ticks as would fit into the memory that any recording may use.
+TEST(RecordingOrigin, ClaimIsComparedWithTheBytesOfItsTicks) {
+  for (const hsize_t claimed : {20'000, 100'000}) {
+    expect_refused(hollow_recording("hollow.h5", claimed, false),
+                   "states " + std::to_string(claimed) + " ticks, but it does not contain them");
+  }
+}
+
 // A whole day of ticks in a file of a few kilobytes, which is one hole.
 TEST(RecordingOrigin, HoleCountsAsNoTicks) {
   const fs::path path = hollow_recording("hole.h5", 20'000'000, false);

@@ -1,3 +1,5 @@
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -392,6 +394,22 @@ TEST(Recording, CanBeReadWhileItIsWritten) {
   const auto read = session::read_recording(path);
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->ticks.size(), 1U);
+}
+
+// HDF5 locks files by flock unless it is told not to; other programs hold such locks.
+TEST(Recording, CanBeReadWhileAnotherProgramLocksIt) {
+  const auto path = scratch("locked.h5");
+  ASSERT_TRUE(session::write_recording(path, kInfo, {tick_number(0)}));
+  const int other = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_EQ(::flock(other, LOCK_EX | LOCK_NB), 0);
+  const auto read = session::read_recording(path);
+  ::close(other);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->ticks.size(), 1U);
+}
+
+TEST(Recording, DeviceIsNoRecording) {
+  EXPECT_FALSE(session::kRecordingOutput.matches("/dev/null"));
 }
 
 TEST(Recording, SymbolicLinkStays) {

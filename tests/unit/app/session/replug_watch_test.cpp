@@ -24,6 +24,7 @@ class ReplugWatchTest : public ::testing::Test {
     std::array<std::int16_t, 6> counts{};
     bool lost = false;
     bool silent = false;
+    bool open = false;
     int carried_to = -1;  // the hand moves the first counter there; below 0: no motion
 
     void carry() {
@@ -36,7 +37,8 @@ class ReplugWatchTest : public ::testing::Test {
 
   class OnWire final : public driver::Transport {
    public:
-    explicit OnWire(Wire& wire) : wire_(wire) {}
+    explicit OnWire(Wire& wire) : wire_(wire) { wire_.open = true; }
+    ~OnWire() override { wire_.open = false; }
     driver::TransportRead read_latest(std::span<std::byte> buffer, std::int64_t) noexcept override {
       if (wire_.lost) return {.status = driver::TransportStatus::kLost};
       if (wire_.silent) return {};
@@ -77,6 +79,7 @@ class ReplugWatchTest : public ::testing::Test {
             .open = [this](const driver::FoundArm&)
                 -> driver::Result<std::unique_ptr<driver::ArmLink>> {
               ++opened_;
+              first_was_open_ = first_.open;
               second_.lost = false;
               return std::unique_ptr<driver::ArmLink>(std::make_unique<driver::WireLink>(
                   std::make_unique<OnWire>(second_),
@@ -125,7 +128,7 @@ class ReplugWatchTest : public ::testing::Test {
   }
 
   Wire first_, second_;
-  bool plugged_ = false, enter_ = false;
+  bool plugged_ = false, enter_ = false, first_was_open_ = false;
   int opened_ = 0;
   driver::VirtualClock clock_;
   std::unique_ptr<driver::Device> device_;
@@ -274,6 +277,31 @@ TEST_F(ReplugWatchTest, FindsAnArmDisconnectedTwice) {
   enter_ = true;
   pass(6);
   EXPECT_GT(force(), 0.4);
+}
+
+TEST_F(ReplugWatchTest, ClosesTheLostLinkBeforeItOpensTheNext) {
+  pass(5);
+  ASSERT_TRUE(first_.open);
+  first_.lost = true;
+  plugged_ = true;
+  pass(12);
+  ASSERT_EQ(opened_, 1);
+  EXPECT_FALSE(first_was_open_);
+  EXPECT_TRUE(second_.open);
+}
+
+TEST_F(ReplugWatchTest, SaysHowForcesAreEnabledAfterAFault) {
+  pass(5);
+  device_->trip(Fault::kOverSpeed);
+  pass(2);
+  EXPECT_TRUE(reported("Press Enter to enable forces again."));
+}
+
+TEST_F(ReplugWatchTest, AsksNoEnterWhileTheArmIsDisconnected) {
+  pass(5);
+  first_.lost = true;
+  pass(2);
+  EXPECT_FALSE(reported("Press Enter to enable forces again."));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "run_records.h"
+#include "setup.h"
 #include "support/scratch.h"
 #include "thimble/session/session.h"
 
@@ -82,6 +84,30 @@ TEST_F(BlackBoxesTest, AllAreSavedAfterRun) {
   fail(1, 10);
   session::keep_black_boxes(*session_, true);
   EXPECT_EQ(files().size(), 2U);
+}
+
+TEST_F(BlackBoxesTest, TerminalShowsTheProgressOfTheRun) {
+  const std::atomic<bool> stop{false};
+  session_->step(stop);
+  for (const bool on_terminal : {true, false}) {
+    session::RunAttendance attendance(*session_, nullptr, nullptr, on_terminal);
+    testing::internal::CaptureStderr();
+    attendance.step();
+    const std::string shown = testing::internal::GetCapturedStderr();
+    EXPECT_EQ(shown.find("depth") != std::string::npos, on_terminal) << shown;
+    attendance.clear();
+  }
+}
+
+TEST_F(BlackBoxesTest, LinesOfEachArmBeginWithItsName) {
+  std::string printed;
+  session::Terminal all;
+  all.print_line = [&printed](const std::string& line) { printed += line + '|'; };
+  const session::Terminal right = session::terminal_of(session_->setup(), 1, all);
+  right.print_line("Press Enter.");
+  right.print_line("\nForce is off.");
+  EXPECT_EQ(printed, "right: Press Enter.|\nright: Force is off.|");
+  EXPECT_FALSE(right.ask) << "there is nothing to prefix";
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/seed.h"
+#include "thimble/session/run_figures.h"
 
 namespace thimble::session {
 namespace {
@@ -54,8 +55,17 @@ TEST(Histogram, ClampsValuesOutOfRange) {
   EXPECT_EQ(histogram.max_ns(), session::Histogram::kMax_ns);
 }
 
+TEST(Histogram, MeanIsTheSumOverTheNumberOfValues) {
+  session::Histogram histogram;
+  histogram.add(700);
+  EXPECT_EQ(histogram.mean_ns(), 700);
+  histogram.add(100);
+  EXPECT_EQ(histogram.mean_ns(), 400);
+}
+
 TEST(Histogram, IsZeroWithoutValues) {
   const session::Histogram histogram;
+  EXPECT_EQ(histogram.mean_ns(), 0);
   EXPECT_EQ(histogram.percentile(0.5), 0);
   EXPECT_EQ(histogram.min_ns(), 0);
   EXPECT_EQ(histogram.max_ns(), 0);
@@ -157,6 +167,19 @@ TEST(RunStatistics, KeepsTheFirstFault) {
   statistics.take(record);
   EXPECT_EQ(statistics.fault_ticks(), 2U);
   EXPECT_EQ(statistics.first_fault(), driver::Fault::kOverSpeed);
+}
+
+TEST(RunFigures, ReportPeriodsInMicroseconds) {
+  session::RunFigures report;
+  report.statistics.take(tick(1'000'000, false));
+  report.statistics.take(tick(3'500'000, false));
+  for (const session::Figure& figure : session::figures_of(report)) {
+    if (figure.name != "period_max") continue;
+    EXPECT_EQ(figure.value, 2500);
+    EXPECT_EQ(figure.unit, "us");
+    return;
+  }
+  ADD_FAILURE() << "there is no period_max";
 }
 
 }  // namespace

@@ -111,6 +111,13 @@ TEST_F(SessionStart, NonInteractiveStartRequiresTheHomePose) {
   EXPECT_EQ(forced_, 0);
 }
 
+TEST_F(SessionStart, RealArmKeepsTheRateOfItsScene) {
+  options_.rate_factor = 4;
+  const auto prepared = session::Session::prepare(scene(), options_);
+  ASSERT_TRUE(prepared) << prepared.error().message;
+  EXPECT_EQ((*prepared)->scene().rate, 1000);
+}
+
 TEST_F(SessionStart, ReportsObjectsInWhichARealTipStarts) {
   const std::filesystem::path file = support::scratch_folder() / "around_the_arm.yaml";
   std::ofstream(file) << "name: around\narm: vintage_phantom\nduration: 1\nobjects:\n"

@@ -193,6 +193,13 @@ TEST_F(SessionTest, SummarisesItsFigures) {
   EXPECT_EQ(stopped->figures().end, driver::ServoEnd::kStopped);
 }
 
+TEST_F(SessionTest, KnobsOfASessionWithoutThemNameTheOption) {
+  const auto turned = open("box")->turn_knob("box: stiffness", 100);
+  ASSERT_FALSE(turned);
+  EXPECT_NE(turned.error().message.find("SessionOptions::knobs"), std::string::npos)
+      << turned.error().message;
+}
+
 TEST_F(SessionTest, ReturnsDentsAndMeshesByName) {
   session::SessionOptions options;
   options.duration = 3;

@@ -8,12 +8,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <fstream>
 #include <limits>
 #include <optional>
 #include <random>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -23,6 +25,7 @@
 #include "hold_key.h"
 #include "mesh/contact_mesh.h"
 #include "share/arm_lines.h"
+#include "share/run_attachment.h"
 #include "share/shared_reader.h"
 #include "share/shared_run.h"
 #include "share/turn_knob.h"
@@ -1010,6 +1013,113 @@ TEST(KnobOrder, ChangesTheNamedKnobAndListsKnobs) {
   ASSERT_FALSE(unknown);
   EXPECT_NE(unknown.error().message.find("stiff: stiffness"), std::string::npos);
   EXPECT_EQ(pair.run->knob_wanted(0), 300.5);
+}
+
+TEST(Share, ShowsTheKindOfEachObject) {
+  session::SharedScene scene = small_scene();
+  scene.objects[0].kind = session::SharedKind::kField;
+  const Pair pair = joined(scene);
+  EXPECT_EQ(pair.reader->scene().objects[0].kind, session::SharedKind::kField);
+  EXPECT_EQ(pair.reader->scene().objects[1].kind, session::SharedKind::kMesh);
+}
+
+TEST(Share, KeepsEachYesAndNoOfATick) {
+  const Pair pair = joined(small_scene());
+  bool TickRecord::*const all[] = {&TickRecord::in_contact, &TickRecord::fresh,
+                                   &TickRecord::has_gripper, &TickRecord::home_needed};
+  for (const auto one : all) {
+    for (const bool value : {true, false}) {
+      TickRecord stored, seen;
+      for (const auto other : all) stored.*other = !value;
+      stored.*one = value;
+      pair.run->store_tick(stored);
+      ASSERT_TRUE(pair.reader->newest(seen));
+      for (const auto other : all) EXPECT_EQ(seen.*other, stored.*other);
+    }
+  }
+}
+
+TEST(Share, RejectsATickWithAnUnknownState) {
+  const Pair pair = joined(small_scene());
+  TickRecord stage, fault, link, before_none, beyond_last;
+  stage.stage = static_cast<driver::DeviceStage>(static_cast<int>(driver::kLastStage) + 1);
+  fault.fault = static_cast<driver::Fault>(static_cast<int>(driver::kLastFault) + 1);
+  link.link = static_cast<driver::LinkState>(static_cast<int>(driver::kLastLinkState) + 1);
+  before_none.object = -2;
+  beyond_last.object = 2;
+  std::uint64_t rejected = 0;
+  for (const TickRecord& wrong : {stage, fault, link, before_none, beyond_last}) {
+    pair.run->store_tick(wrong);
+    TickRecord seen;
+    EXPECT_FALSE(pair.reader->newest(seen)) << rejected;
+    EXPECT_EQ(pair.reader->rejected(), ++rejected);
+  }
+}
+
+// A bool whose byte is neither 0 nor 1 may not be read as one.
+TEST(Share, InvalidByteOfABoolIsFalse) {
+  const Pair pair = joined(small_scene());
+  render::BodyPatch stored{}, seen{};
+  unsigned char byte = 2;
+  std::memcpy(&stored.complete, &byte, 1);
+  pair.run->store_patch(stored);
+  ASSERT_TRUE(pair.reader->patch(seen));
+  std::memcpy(&byte, &seen.complete, 1);
+  EXPECT_EQ(byte, 0);
+}
+
+TEST(Share, NamesTheLayoutOfTheShortestHeader) {
+  struct alignas(64) Header {
+    std::uint64_t ready = session::kSharedReady, layout = 7;
+  } header;
+  const auto read = session::read_shared_scene(std::as_bytes(std::span(&header, 1)).first(16));
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().message.find("memory layout 7"), std::string::npos)
+      << read.error().message;
+}
+
+// The descriptor of the memory is then 0.
+TEST(Share, AttachesWithoutStandardInput) {
+  const std::string name = name_for("no-input");
+  const auto run = session::SharedRun::create(name, small_scene(), 10).value();
+  const int input = fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3);
+  close(STDIN_FILENO);
+  const bool attached = session::SharedReader::attach(name).ok();
+  dup2(input, STDIN_FILENO);
+  close(input);
+  EXPECT_TRUE(attached);
+}
+
+TEST(RunAttachment, AttachesToTheNamedRunOnce) {
+  const std::string name = name_for("attach");
+  const auto run = session::SharedRun::create(name, small_scene(), 10).value();
+  session::RunAttachment attachment(name);
+  EXPECT_TRUE(attachment.step());
+  ASSERT_NE(attachment.reader(), nullptr);
+  EXPECT_EQ(attachment.reader()->scene().name, "small");
+  EXPECT_FALSE(attachment.step()) << "it is attached";
+  EXPECT_FALSE(attachment.over());
+  EXPECT_EQ(attachment.notice(), "");
+}
+
+TEST(RunAttachment, KeepsTheNameOfTheRunItFound) {
+  const std::string name = name_for("found");
+  const auto run = session::SharedRun::create(name, small_scene(), 10).value();
+  session::RunAttachment attachment("");
+  if (session::running_runs().front().name != name) GTEST_SKIP() << "another run is newer";
+  ASSERT_TRUE(attachment.step());
+  EXPECT_EQ(attachment.name(), name);
+}
+
+TEST(RunAttachment, SearchesAtMostFourTimesASecond) {
+  const std::string name = name_for("later");
+  session::RunAttachment attachment(name);
+  EXPECT_FALSE(attachment.step());
+  EXPECT_EQ(attachment.notice(), "Waiting for a run named " + name + ".");
+  const auto run = session::SharedRun::create(name, small_scene(), 10).value();
+  EXPECT_FALSE(attachment.step()) << "it has just searched";
+  std::this_thread::sleep_for(std::chrono::milliseconds(260));
+  EXPECT_TRUE(attachment.step());
 }
 
 }  // namespace

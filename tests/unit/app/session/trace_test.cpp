@@ -39,6 +39,14 @@ TEST(Trace, CountsTicksAfterTheExpectedEnd) {
   EXPECT_EQ(trace.dropped(), 30U);
 }
 
+TEST(Trace, CountsRowsAfterTheEndOfALongRun) {
+  session::Trace trace(200, 100);
+  run(trace, 300);
+  EXPECT_EQ(trace.stride(), 2U);
+  EXPECT_EQ(trace.rows().size(), 100U);
+  EXPECT_EQ(trace.dropped(), 50U);
+}
+
 TEST(Trace, FillsItsRoomWhenTheLengthIsUnknown) {
   session::Trace trace(0, 10);
   run(trace, 25);

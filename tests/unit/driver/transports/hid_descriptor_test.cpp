@@ -51,6 +51,17 @@ TEST(HidDescriptor, KeepsTheUsageOfTheOuterCollection) {
   EXPECT_EQ(read(nested).in_bytes, 8u);
 }
 
+TEST(HidDescriptor, ReportNumberBeforeTheCollectionChangesNoUsage) {
+  const std::vector<unsigned char> numbered = {0x85, 0x01,  // report 1
+                                               0x06, 0xab, 0xff, 0x0a, 0x00, 0x02, 0xa1,
+                                               0x01,  // page ffab, usage 0200: a collection
+                                               0x75, 0x08, 0x95, 0x08, 0x81, 0x02, 0xc0};
+  EXPECT_EQ(
+      read(numbered),
+      (HidReports{
+          .usage_page = 0xffab, .usage = 0x0200, .in_bytes = 8, .out_bytes = 0, .numbered = true}));
+}
+
 TEST(HidDescriptor, PassesOverALongItemAndReadsOn) {
   // A long item of three bytes [HID 1.11, 6.2.2.3], then eight bytes in.
   const std::vector<unsigned char> with_long = {0xfe, 0x03, 0xf0, 0x81, 0x81, 0x81,

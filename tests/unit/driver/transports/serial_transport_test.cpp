@@ -119,6 +119,17 @@ TEST_F(SerialTransportTest, HangUpIsALostArm) {
   EXPECT_EQ(write("[0,0,0]\n"), TransportStatus::kLost);
 }
 
+// The end of the file is no error, so `errno` is that of an earlier call.
+TEST_F(SerialTransportTest, EndOfTheFileIsALostArmAfterAnyError) {
+  open();
+  hang_up();
+  for (const int error : {EINTR, EAGAIN}) {
+    errno = error;
+    read(0);
+    EXPECT_EQ(last_.status, TransportStatus::kLost) << error;
+  }
+}
+
 TEST_F(SerialTransportTest, FullPortRefusesInsteadOfWaiting) {
   open();
   const std::string line = "[" + std::string(90, '1') + "]\n";

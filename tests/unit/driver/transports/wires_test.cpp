@@ -119,6 +119,31 @@ TEST_F(FtdiWire, ManyFailedReadsInARowAreALostArm) {
   EXPECT_EQ(write(), TransportStatus::kLost);
 }
 
+TEST_F(FtdiWire, AReadMessageStartsTheCountOfFailedReadsAgain) {
+  open();
+  usb_.say("<ok>");
+  ASSERT_EQ(read(), "<ok>");
+  for (int i = 0; i < 8; ++i) usb_.fail(LIBUSB_TRANSFER_STALL);
+  for (int i = 0; i < 10; ++i) read();
+  EXPECT_EQ(last_.status, TransportStatus::kNothing);
+  usb_.fail(LIBUSB_TRANSFER_STALL);
+  read();
+  EXPECT_EQ(last_.status, TransportStatus::kLost) << "the ninth in a row";
+}
+
+TEST_F(FtdiWire, TransfersWaitWithoutATimeLimit) {
+  usb_.takes = false;
+  open();
+  ASSERT_EQ(write(), TransportStatus::kOk);
+  int transfers = 0;
+  for (const void* waiting : usb_.waiting) {
+    if (waiting == nullptr) continue;
+    ++transfers;
+    EXPECT_EQ(static_cast<const libusb_transfer*>(waiting)->timeout, 0U);
+  }
+  EXPECT_EQ(transfers, usb_.under_way);
+}
+
 TEST_F(FtdiWire, DisconnectedArmIsLost) {
   open();
   usb_.fail(LIBUSB_TRANSFER_NO_DEVICE);

@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "support/open_gate.h"
 #include "vendors/force_box.h"
 #include "vendors/newest_slot.h"
 #include "vendors/slot_link.h"
+#include "vendors/vendor_library.h"
 
 namespace thimble::driver {
 namespace {
@@ -139,6 +142,22 @@ TEST(SlotLink, RefusedForceIsNeverSent) {
   EXPECT_EQ(write(), LinkStatus::kOk);
   ASSERT_TRUE(link.take_force(f));
   EXPECT_EQ(f, force.f_T_W());
+}
+
+TEST(VendorLibrary, AbsentFilesAreListed) {
+  const std::vector<std::string> files{"/nowhere/a.so", "/nowhere/b.so"};
+  const auto opened = open_vendor_library(files, {}, "");
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().message,
+            "None of these libraries was found: /nowhere/a.so, /nowhere/b.so.");
+}
+
+TEST(VendorLibrary, FirstFileThatIsNoLibraryIsNamed) {
+  const std::vector<std::string> files{"/nowhere/a.so", "/proc/version", "/proc/filesystems"};
+  const auto opened = open_vendor_library(files, {}, "");
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().message.find("Cannot open the library: /proc/version: "), 0U)
+      << opened.error().message;
 }
 
 }  // namespace

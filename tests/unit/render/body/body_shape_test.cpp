@@ -459,5 +459,19 @@ TEST(Shape, RefusesOrSurvivesInvalidInput) {
   }
 }
 
+TEST(BodyShape, PrintWithoutARimIsLimitedByItsOwnRadius) {
+  ShapeChoice choice{.clay = ClayChoice{.radius = 0.5}};
+  for (const bool keeps_volume : {false, true}) {
+    choice.clay->keeps_volume = keeps_volume;
+    const auto refused = BodyShape::build(
+        ContactMesh::build(support::bumpy_sphere(5, 0.05, 0, 0)).value(), choice, kStiffness);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().message.find(keeps_volume ? "A print with its rim of radius "
+                                                        : "A print of radius 0.5 m"),
+              0U)
+        << refused.error().message;
+  }
+}
+
 }  // namespace
 }  // namespace thimble::render

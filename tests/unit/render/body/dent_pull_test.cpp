@@ -14,8 +14,10 @@
 
 #include "body/dent/dented_touch.h"
 #include "dent_shapes.h"
+#include "mesh/contact_mesh.h"
 #include "mesh/triangle_place.h"
 #include "support/meshes/body_meshes.h"
+#include "support/meshes/shapes.h"
 #include "thimble/render/build_object_touch.h"
 
 namespace thimble::render {
@@ -319,6 +321,25 @@ TEST(DentPull, DoesNoWorkAroundAClosedWayAcrossAnEdge) {
     EXPECT_LT(std::abs(other.net - other.jumps), 1e-9);
     if (between > 0) {
       EXPECT_GT(std::abs(other.jumps), 1e-7);
+    }
+  }
+}
+
+// A tip beyond the edge opposite of one corner has weight 0 there, and the weights sum to 1.
+TEST(TrianglePlace, WeightsOfATipBeyondAnEdgeAreWithinTheTriangle) {
+  const TriangleMesh box = support::box(Vector3d::Constant(0.03));
+  const auto mesh = ContactMesh::build(box);
+  ASSERT_TRUE(mesh);
+  for (std::int32_t t = 0; t < mesh->triangle_count(); ++t) {
+    const Vector3d middle =
+        (mesh->position(t, 0) + mesh->position(t, 1) + mesh->position(t, 2)) / 3;
+    for (int corner = 0; corner < 3; ++corner) {
+      const Vector3d beyond =
+          middle + 0.7 * (middle - mesh->position(t, static_cast<std::size_t>(corner)));
+      const Vector3d weights = edge_plane_place(*mesh, t, 0.95 * beyond).weights;
+      EXPECT_GE(weights.minCoeff(), 0) << t << ", " << corner << ": " << weights.transpose();
+      EXPECT_EQ(weights[corner], 0) << t << ", " << corner;
+      EXPECT_NEAR(weights.sum(), 1, 1e-15);
     }
   }
 }

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 
 #include "load_text.h"
+#include "mesh/file/package/zip_archive.h"
 #include "thimble/render/mesh/check_mesh.h"
 
 namespace thimble::render {
@@ -170,6 +172,15 @@ TEST(Read3mf, PlacesObjectsOfASecondModel) {
   EXPECT_EQ(info.unit, 0.001);
 }
 
+TEST(ReadGltf, AcceptsItsVersionAsANumber) {
+  std::string text = quantized_text("", "");
+  const std::string version = R"("2.0")";
+  text.replace(text.find(version), version.size(), "2");
+  const auto mesh = load_text("number.gltf", text);
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  EXPECT_EQ(mesh->triangles.size(), 4U);
+}
+
 // An archive of one stored file, 3D/3dmodel.model.
 std::string archive_of(const std::string& model) {
   const auto number = [](std::size_t value, int bytes) {
@@ -227,6 +238,48 @@ TEST(Read3mf, RefusesMissingObjects) {
             std::string::npos);
   EXPECT_NE(refusal("none.3mf", archive_of(model_text("", ""))).find("its build has no item"),
             std::string::npos);
+}
+
+// The production extension gives each part its own path; its other attributes are none.
+TEST(Read3mf, OnlyTheAttributeNamedPathIsAPath) {
+  const std::string model =
+      R"(<?xml version="1.0"?><model unit="millimeter" )"
+      R"(xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" )"
+      R"(xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06">)"
+      R"(<resources><object id="1"><mesh><vertices><vertex x="0" y="0" z="0"/>)"
+      R"(<vertex x="1" y="0" z="0"/><vertex x="0" y="1" z="0"/></vertices><triangles>)"
+      R"(<triangle v1="0" v2="1" v3="2"/></triangles></mesh></object><object id="2"><components>)"
+      R"(<component objectid="1" p:UUID="a4c5"/></components></object></resources>)"
+      R"(<build><item objectid="2"/></build></model>)";
+  const auto mesh = load_text("uuid.3mf", archive_of(model));
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  EXPECT_EQ(mesh->triangles.size(), 1U);
+}
+
+// A ZIP64 field holds the numbers that are 0xffffffff in the directory [PKWARE, APPNOTE 4.5.3].
+TEST(Read3mf, ReadsSizesOfZip64) {
+  const auto number = [](std::uint64_t value, int bytes) {
+    std::string text;
+    for (int i = 0; i < bytes; ++i, value >>= 8) text += static_cast<char>(value & 0xff);
+    return text;
+  };
+  const std::string name = "a", content = "stored";
+  const std::string local = "PK\3\4" + number(0, 14) + number(content.size(), 4) +
+                            number(content.size(), 4) + number(name.size(), 2) + number(0, 2) +
+                            name + content;
+  const std::string extra =
+      number(1, 2) + number(16, 2) + number(content.size(), 8) + number(content.size(), 8);
+  const std::string central = "PK\1\2" + number(0, 16) + number(0xffffffff, 4) +
+                              number(0xffffffff, 4) + number(name.size(), 2) +
+                              number(extra.size(), 2) + number(0, 10) + number(0, 4) + name + extra;
+  const std::string bytes = local + central + "PK\5\6" + number(0, 4) + number(1, 2) +
+                            number(1, 2) + number(central.size(), 4) + number(local.size(), 4) +
+                            number(0, 2);
+  const auto archive = ZipArchive::open(bytes);
+  ASSERT_TRUE(archive.ok()) << archive.error().message;
+  const auto read = archive->read("a");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(*read, content);
 }
 
 }  // namespace

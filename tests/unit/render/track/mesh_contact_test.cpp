@@ -46,6 +46,13 @@ TEST(MeshContact, StartInsideIsNotContact) {
   EXPECT_TRUE(move(contact, {0, 0.1, 0.9}).touching);
 }
 
+TEST(MeshContact, EntersFromWhereItWasPlaced) {
+  MeshContact contact = MeshContact::build(support::box({1, 1, 1})).value();
+  contact.set_free({0, 0.1, 1.1});
+  EXPECT_EQ(contact.free_tip(), Vector3d(0, 0.1, 1.1));
+  EXPECT_TRUE(move(contact, {0, 0.1, 0.9}).touching);
+}
+
 TEST(MeshContact, EndsContactForAPositionThatIsNaN) {
   MeshContact contact = MeshContact::build(support::box({1, 1, 1})).value();
   move(contact, {0.1, 0.2, 1.1});

@@ -24,6 +24,18 @@ namespace {
 using Eigen::Vector3d;
 using support::SolidBlock;
 
+// The point is far outside of the first plane and below the second, which faces away from it.
+TEST(PushOut, PlaneFromWhichAPointIsOutsideDoesNotPull) {
+  const double slope = std::sqrt(0.75);
+  const std::array<ActivePlane, 2> planes{ActivePlane{{0, 0, 1}, -10},
+                                          ActivePlane{{slope, 0, -0.5}, 1}};
+  for (const auto& order : {planes, std::array{planes[1], planes[0]}}) {
+    const PushOut push = push_out(order, {0, 0, 0}, 0, 1e-15);
+    EXPECT_TRUE(push.feasible);
+    EXPECT_LT((push.d - planes[1].n).norm(), 1e-14) << push.d.transpose();
+  }
+}
+
 TEST(WorldGroove, AWallAcrossAGrooveMakesACornerOfThreePlanes) {
   constexpr double kLeft = 0.5, kRight = 0.7, kStiffness = 800;
   const support::ConcaveSolid groove =
