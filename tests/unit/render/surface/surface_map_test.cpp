@@ -231,7 +231,7 @@ TEST(SurfaceMap, CheckerIsFeltInClosedForm) {
   // of each neighbour, in both directions.
   const auto checker = std::make_shared<const HeightImage>(2, 2, std::vector<float>{1, 0, 0, 1});
   const Slab on =
-      slab([](std::size_t, const Vector3d& p) { return Vector2d(p.x(), p.y()) / 0.002; });
+      slab([](std::size_t, const Vector3d& p) -> Vector2d { return p.head<2>() / 0.002; });
   auto touch = build(on, textured(on, checker, 1e-4));
   const double white = (16.0 + 4 * 1) / 36, black = 16.0 / 36;
   for (int i = -5; i < 5; ++i) {
