@@ -1,4 +1,4 @@
-#include "thimble/render/choose_tracker.h"
+#include "thimble/render/build_object_touch.h"
 
 #include <fmt/format.h>
 

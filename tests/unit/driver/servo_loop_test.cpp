@@ -89,7 +89,10 @@ class ServoLoopTest : public ::testing::Test {
 };
 
 TEST(ForceCommand, ScalesForcesAndStoredEnergyAlike) {
-  ForceCommand command{.f_T_W = {4, -2, 1}, .stored = 3, .f_program_W = {2, 0, -6}};
+  ForceCommand command;
+  command.f_T_W = {4, -2, 1};
+  command.f_program_W = {2, 0, -6};
+  command.stored = 3;
   scale(command, 0.25);
   EXPECT_EQ(command.f_T_W, Eigen::Vector3d(1, -0.5, 0.25));
   EXPECT_EQ(command.f_program_W, Eigen::Vector3d(0.5, 0, -1.5));

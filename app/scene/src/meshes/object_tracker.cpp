@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "thimble/render/choose_tracker.h"
+#include "thimble/render/build_object_touch.h"
 
 namespace thimble::scene {
 namespace {

@@ -14,7 +14,7 @@
 #include "meshes/mesh_join.h"
 #include "meshes/object_mesh.h"
 #include "still_surface.h"
-#include "thimble/render/choose_tracker.h"
+#include "thimble/render/build_object_touch.h"
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::scene {

@@ -20,6 +20,7 @@ void HeightMap::Settings::read(SettingsReader& reader, const EffectContext& cont
                             "needs map: projected; with map: uv the mesh file places the image");
     }
   } else {
+    (void)reader.has("width");  // not needed with `map: uv`
     reader.number("width", width, {.unit = "m", .min = 1e-4, .max = 1, .required = true});
   }
   reader.number("height", height, {.unit = "m", .min = 0, .max = 0.05, .required = true});

@@ -343,7 +343,7 @@ TEST(BallShapes, AConeIsRoundedAtItsRimAndItsTip) {
   });
 }
 
-TEST(BallShapes, AHoleOfATorusThatIsTooNarrowCarriesTheBallOnItsAxis) {
+TEST(BallShapes, ANarrowHoleOfATorusCarriesTheBallOnItsAxis) {
   Torus torus;
   torus.radius = 0.02;
   torus.tube = 0.01;
