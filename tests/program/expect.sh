@@ -4,6 +4,11 @@ set -u
 thimble=$1
 source_dir=$2
 work=$3
+# With the arguments in another order, this would remove the sources.
+if [ -e "$work/.git" ] || [ -e "$work/CMakeLists.txt" ]; then
+  echo "expect.sh: $work is not a folder for a test's files; the arguments are THIMBLE SOURCE_DIR WORK_DIR" >&2
+  exit 2
+fi
 rm -rf "$work"
 mkdir -p "$work"
 cd "$work"
