@@ -399,7 +399,7 @@ TEST(Recording, CanBeReadWhileItIsWritten) {
 // HDF5 locks files by flock unless it is told not to; other programs hold such locks.
 TEST(Recording, CanBeReadWhileAnotherProgramLocksIt) {
   const auto path = scratch("locked.h5");
-  ASSERT_TRUE(session::write_recording(path, kInfo, {tick_number(0)}));
+  ASSERT_TRUE(session::write_recording(path, kInfo, std::vector{tick_number(0)}));
   const int other = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   ASSERT_EQ(::flock(other, LOCK_EX | LOCK_NB), 0);
   const auto read = session::read_recording(path);
