@@ -210,7 +210,7 @@ TEST_F(NextRunTest, HandlerWithoutANextRunServesRecordings) {
   handler.step();
   EXPECT_FALSE(handler.ended());
   handler.close();
-  EXPECT_EQ(view(*session)->notice(), "") << "nobody asked for a recording";
+  EXPECT_EQ(view(*session)->notice(), "") << "no recording was requested";
 }
 
 TEST_F(NextRunTest, ViewersKeepTheLastEightSeconds) {
