@@ -196,7 +196,7 @@ TEST(SimulationSection, AcceptsEachNumberUpToItsLimitsOnly) {
       {"    coulomb: 0.04", "    weight: ", "\n    coulomb: 0.04", 0, 10},
       {"current_max: 6 ", "current_max: ", " ", 0.01, 32},
       {"report_period: 0.001", "report_period: ", "", 1e-5, 0.1},
-      {"watchdog: 0.1 s", "watchdog: ", " ", 1e-3, 10},
+      {"    watchdog: 0.1", "    watchdog: ", "", 1e-3, 10},
       {"current_range: 6 ", "current_range: ", " ", 0.01, 32.767},
       {"delay_in: 0 ", "delay_in: ", " ", 0, 1},
       {"delay_out: 0.001", "delay_out: ", "", 0, 1},

@@ -396,7 +396,7 @@ TEST(Recording, CanBeReadWhileItIsWritten) {
   EXPECT_EQ(read->ticks.size(), 1U);
 }
 
-// HDF5 locks files by flock unless it is told not to; other programs hold such locks.
+// HDF5 locks files by flock unless this is switched off; other programs hold such locks.
 TEST(Recording, CanBeReadWhileAnotherProgramLocksIt) {
   const auto path = scratch("locked.h5");
   ASSERT_TRUE(session::write_recording(path, kInfo, std::vector{tick_number(0)}));
