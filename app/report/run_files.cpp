@@ -3,6 +3,7 @@
 #include "report/pictures.h"
 #include "report/report.h"
 #include "setup.h"
+#include "share/shared_run.h"
 
 namespace thimble::report {
 namespace {
@@ -18,8 +19,12 @@ driver::Result<void> write_arm_files(const session::Session& session,
                          .period = 1 / figures.requested_rate,
                          .period_times = &figures.statistics.period(),
                          .work_times = &figures.statistics.work()};
+  // The path is drawn without the objects if they are too many.
+  const session::Setup& setup = session.setup();
+  const render::TriangleMesh none;
+  const bool fits = session::check_object_count(setup.scene().objects.size()).ok();
   auto drawn = draw_pictures(page != nullptr ? page->ticks(arm) : session.ticks(arm),
-                             session.setup().objects().mesh_W(), info, folder);
+                             fits ? setup.objects().mesh_W() : none, info, folder);
   if (!drawn) return drawn;
   auto dent = session.deepest_dent();
   if (!dent) return {};

@@ -11,6 +11,7 @@
 #include "run_records.h"
 #include "setup.h"
 #include "share/describe_scene.h"
+#include "share/shared_run.h"
 #include "thimble/scene/build_info.h"
 
 namespace thimble::report {
@@ -103,6 +104,8 @@ driver::Result<void> RunPage::write(const driver::RealTimeGrant& grant,
                                     const std::filesystem::path& file) {
   finish();
   const session::Setup& setup = session_.setup();
+  // The meshes of too many shapes would fill the memory.
+  if (auto fits = session::check_object_count(setup.scene().objects.size()); !fits) return fits;
   PageTouch touch{.title = setup.scene().name,
                   .subtitle = setup.scene().description,
                   .program = scene::program_name(),

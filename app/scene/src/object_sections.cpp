@@ -13,7 +13,7 @@
 
 #include "energy_guard_settings.h"
 #include "surface/friction/friction_settings.h"
-#include "surface/texture/height_image.h"
+#include "surface/height_image.h"
 #include "worst_direction.h"
 #include "yaml/yaml_settings.h"
 

@@ -38,6 +38,7 @@ constexpr double kSheetMin = 1e-5, kSheetMax = 0.02;  // m
 constexpr std::int64_t kBudgetMin = 1;                // MiB: 16 pages, around a tip at rest
 constexpr std::int64_t kBudgetMax = 1 << 20;          // MiB
 constexpr double kBandMax = 0.1;                      // m
+constexpr double kTipRadiusMin = 1e-5;                // m; less cannot be felt
 constexpr double kTipRadiusMax = 0.1;                 // m
 constexpr double kDurationMax = 86400;                // s
 constexpr double kRateMin = 10;                       // Hz
@@ -90,7 +91,9 @@ void read_mesh(YamlMap& map, const std::filesystem::path& folder,
   if (map.has("mesh")) {
     object.mesh_file = find_mesh_file(map, folder, mesh_folder);
   } else {
-    map.refuse_absence("expected one of mesh, plane, sphere, box and field, found none");
+    map.refuse_absence(
+        "expected one of mesh, plane, sphere, box, cylinder, capsule, cone, torus and field, found "
+        "none");
   }
   if (map.has("size")) object.size = map.require_number("size", "m", 1e-4, kPositionMax);
   if (object.size && map.has("scale")) {
@@ -140,9 +143,7 @@ void read_sheets(YamlMap& map, SceneObject& object) {
 
 /// Reads the stiffness over a surface: `stiffness` becomes the largest one.
 void read_stiffness_map(YamlMap& map, const std::filesystem::path& folder, SceneObject& object) {
-  if (map.has("stiffness")) {
-    map.refuse("stiffness", "cannot be used with stiffness_map; keep one of them");
-  }
+  map.explain_unused("stiffness", "cannot be used with stiffness_map; keep one of them");
   object.stiffness_map =
       read_map(map.require_map("stiffness_map"), folder, "N/m", kMapStiffnessMin, kStiffnessMax);
   render::MapChoice& choice = *object.stiffness_map;
@@ -299,6 +300,9 @@ std::string_view not_by_ball(const SceneObject& object) {
 /// Reads the tip, and gives it to all objects.
 void read_tool(YamlMap tool, Scene& scene) {
   scene.tip_radius = tool.optional_number("radius", 0, "m", 0, kTipRadiusMax);
+  if (scene.tip_radius > 0 && scene.tip_radius < kTipRadiusMin) {
+    tool.reject("radius", fmt::format("expected 0, a point, or {:g} m and more", kTipRadiusMin));
+  }
   if (scene.tip_radius > 0) {
     for (SceneObject& object : scene.objects) {
       if (object.build_field) continue;

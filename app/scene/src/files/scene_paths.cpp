@@ -23,11 +23,22 @@ bool is_file(const fs::path& path) {
 
 }  // namespace
 
+fs::path find_scene_file(const fs::path& folder, const std::string& name) {
+  const fs::path path = (folder / name).lexically_normal();
+  if (is_file(path) || name.find('/') != std::string::npos) return path;
+  for (const fs::path& data : data_folders()) {
+    if (is_file(data / "scenes" / name)) return data / "scenes" / name;
+  }
+  return path;
+}
+
 fs::path find_mesh_file(YamlMap& map, const fs::path& folder, const fs::path& mesh_folder) {
   const std::string text = map.require_string("mesh");
   if (text.empty()) return {};
-  fs::path path = folder / text;
-  if (text.starts_with(kMeshScheme)) {
+  fs::path path;
+  if (!text.starts_with(kMeshScheme)) {
+    path = find_scene_file(folder, text);
+  } else {
     const std::string name = text.substr(kMeshScheme.size());
     path = mesh_folder / name;
     if (mesh_folder.empty()) {
@@ -37,11 +48,6 @@ fs::path find_mesh_file(YamlMap& map, const fs::path& folder, const fs::path& me
         return {};
       }
       path = std::move(found).value();
-    }
-  }
-  if (!is_file(path) && !text.starts_with(kMeshScheme) && text.find('/') == std::string::npos) {
-    for (const fs::path& data : data_folders()) {
-      if (is_file(data / "scenes" / text)) return data / "scenes" / text;
     }
   }
   if (!is_file(path)) {

@@ -18,7 +18,9 @@ enum class Relation {
 };
 
 struct KeyRelation {
-  std::string_view place;  ///< As in KeyNote; a place that ends with `*` is a prefix.
+  /// As in KeyNote; a place that ends with `*` is a prefix, and " otherwise" is for maps without
+  /// any variant.
+  std::string_view place;
   Relation relation;
   std::vector<std::string_view> keys;  ///< Empty: all keys of the map.
 };
@@ -41,7 +43,7 @@ const std::vector<KeyRelation>& relations() {
       {"objects[]", Relation::kSecondToo, {"open", "mesh"}},
       {"objects[]", Relation::kSecondToo, {"budget", "mesh"}},
       {"objects[]", Relation::kSecondToo, {"contact", "mesh"}},
-      {"objects[]", Relation::kAtMostOne, {"stiffness", "stiffness_map"}},
+      {"objects[] otherwise", Relation::kOne, {"stiffness", "stiffness_map"}},
       {"objects[]", Relation::kSecondToo, {"stiffness_map", "mesh"}},
       {"objects[]", Relation::kSecondToo, {"friction_map", "mesh"}},
       {"objects[].stiffness_map", Relation::kOne, {"image", "vertex_colour"}},
@@ -259,6 +261,10 @@ class SchemaWriter {
     }
     std::vector<std::string> then = {properties_of(redefined, place, indent + 6, common)};
     close(then, own_keys(place));
+    const std::vector<std::string> related = relations_of(place, " otherwise");
+    if (!related.empty()) {
+      then.push_back("\"allOf\": [\n" + lines(related, indent + 8) + space(indent + 6) + ']');
+    }
     parts.push_back(condition("\"not\": {\"anyOf\": [" + deciding.text() + "]}", then, indent));
   }
 
@@ -330,13 +336,15 @@ class SchemaWriter {
     return {};
   }
 
-  /// Returns a schema for each relation between keys of a map.
-  std::vector<std::string> relations_of(const std::string& place) const {
+  /// Returns a schema for each relation between keys of a map. `suffix` follows the place of the
+  /// relations.
+  std::vector<std::string> relations_of(const std::string& place,
+                                        std::string_view suffix = {}) const {
     std::vector<std::string> schemas;
     for (const KeyRelation& one : relations()) {
-      const bool prefix = one.place.ends_with('*');
+      const bool prefix = suffix.empty() && one.place.ends_with('*');
       const std::string_view known = one.place.substr(0, one.place.size() - (prefix ? 1 : 0));
-      if (prefix ? !place.starts_with(known) : place != known) continue;
+      if (prefix ? !place.starts_with(known) : place + std::string(suffix) != known) continue;
       std::vector<std::string_view> keys;
       for (const KeyNote* note : own_keys(place)) {
         const auto named = std::find(one.keys.begin(), one.keys.end(), note->key);

@@ -411,9 +411,10 @@ void YamlMap::finish() {
   if (mistakes_->keys() != nullptr) mistakes_->keys()->finished(place_, requested_);
   for (const Entry& entry : entries_) {
     if (std::find(requested_.begin(), requested_.end(), entry.key) != requested_.end()) continue;
-    const auto unused = std::find_if(unused_.begin(), unused_.end(),
+    // The last explanation of a key counts.
+    const auto unused = std::find_if(unused_.rbegin(), unused_.rend(),
                                      [&](const auto& one) { return one.first == entry.key; });
-    if (unused != unused_.end()) {
+    if (unused != unused_.rend()) {
       mistakes_->add(entry.line, entry.key + ": " + unused->second);
       continue;
     }

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <system_error>
 
+#include "files/scene_paths.h"
+
 namespace thimble::scene {
 
 void YamlSettings::number(std::string_view key, double& value, const render::NumberLimits& limits) {
@@ -33,7 +35,7 @@ void YamlSettings::choice(std::string_view key, std::size_t& value,
 void YamlSettings::file(std::string_view key, std::filesystem::path& value) {
   const std::string name = map_.require_string(key);
   if (name.empty()) return;
-  value = (folder_ / name).lexically_normal();
+  value = find_scene_file(folder_, name);
   std::error_code status;
   if (!std::filesystem::is_regular_file(value, status)) {
     map_.refuse(key, "expected a file, found none at " + value.string());

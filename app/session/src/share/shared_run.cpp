@@ -96,8 +96,9 @@ driver::Result<std::unique_ptr<SharedRun>> SharedRun::create_next(SharedRun& bef
 
 driver::Result<void> check_object_count(std::size_t count) {
   if (count <= kObjectsMax) return {};
-  return driver::Error{"A scene with more than " + std::to_string(kObjectsMax) +
-                       " objects cannot be shown; run it with --no-view."};
+  return driver::Error{
+      "A scene with more than " + std::to_string(kObjectsMax) +
+      " objects cannot be shown or drawn; run it with --no-view and without pictures."};
 }
 
 driver::Result<std::unique_ptr<SharedRun>> SharedRun::make(const std::string& name,

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
+#include "surface/height_image.h"
 #include "surface/map/surface_maps.h"
-#include "surface/texture/height_image.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::render {

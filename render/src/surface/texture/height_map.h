@@ -5,7 +5,7 @@
 #include <memory>
 #include <string_view>
 
-#include "surface/texture/height_image.h"
+#include "surface/height_image.h"
 #include "surface/texture/texture_limits.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/export.h"

@@ -155,7 +155,7 @@ TEST_F(MapScenes, MistakesNamePlaceAndRemedy) {
       {"mesh: cube.obj, stiffness_map: {image: none.png, min: 1, max: 9}",
        "error.yaml:5: image: expected a file, found none at"},
       {"mesh: cube.obj, stiffness_map: {image: broken.png, min: 1, max: 9}",
-       "broken.png: not a readable height image ("},
+       "broken.png: not a readable image ("},
       {"mesh: cube.obj, stiffness_map: {image: grey.png, vertex_colour: red, min: 1, max: 9}",
        "vertex_colour: cannot be used with image; keep one of them"},
       {"mesh: cube.obj, stiffness_map: {min: 1, max: 9}",

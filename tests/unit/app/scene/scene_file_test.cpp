@@ -249,6 +249,8 @@ TEST(SceneFile, RefusesATipWithARadiusWhereOnlyAPointCanTouch) {
   EXPECT_NE(mistake(mesh + motion, kWait, "tool: {radius: 0.004}\n").find("can be held"),
             std::string::npos);
   EXPECT_NE(mistake(kBall, kWait, "tool: {radius: 4}\n").find("radius"), std::string::npos);
+  EXPECT_NE(mistake(kBall, kWait, "tool: {radius: 1e-6}\n").find("expected 0, a point, or 1e-05 m"),
+            std::string::npos);
   EXPECT_NE(mistake(kBall, kWait, "tool: {radius: -0.001}\n").find("radius"), std::string::npos);
 }
 

@@ -155,9 +155,11 @@ TEST(UnusedKeys, SayWhatTheyRequire) {
 
 TEST(UnusedKeys, ObjectsAndHandsListTheirChoices) {
   EXPECT_EQ(mistakes_of_scene(scene_text("  - {name: o, stiffness: 1}\n", kPath)),
-            "scene.yaml:5: expected one of mesh, plane, sphere, box and field, found none.");
+            "scene.yaml:5: expected one of mesh, plane, sphere, box, cylinder, capsule, cone, "
+            "torus and field, found none.");
   EXPECT_EQ(mistakes_of_scene(scene_text("  - {name: o, mash: a.off, stiffness: 1}\n", kPath)),
-            "scene.yaml:5: expected one of mesh, plane, sphere, box and field, found none.\n"
+            "scene.yaml:5: expected one of mesh, plane, sphere, box, cylinder, capsule, cone, "
+            "torus and field, found none.\n"
             "scene.yaml:5: mash: unknown key (did you mean \"mesh\"?).");
   EXPECT_EQ(mistakes_of_scene(scene_text(kPlane, "hand: {}\n")),
             "scene.yaml:6: hand: expected either path or bag, found neither.");

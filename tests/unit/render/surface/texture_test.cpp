@@ -488,7 +488,7 @@ TEST(TextureSettings, AreRefusedWithTheReason) {
   std::ofstream(noise) << "nothing";
   EXPECT_NE(mistakes_of<HeightMap>(
                 VariantSettings({{"image", noise.string()}, {"width", 0.01}, {"height", 0.0}}))
-                .find("not a readable height image"),
+                .find("not a readable image"),
             std::string::npos);
 }
 

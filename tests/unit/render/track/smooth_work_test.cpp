@@ -83,12 +83,12 @@ Work work_around(TriangleMesh mesh, TrackerChoice tracker, int paths) {
   return work;
 }
 
-TEST(SmoothWork, IsBelow1e5thOnARegularRing) {
+TEST(SmoothWork, IsBelowHalfAPercentOnAFineRing) {
   const TriangleMesh ring = support::torus(0.04, 0.02, 96, 48);
   for (const TrackerChoice tracker : {TrackerChoice::kOffset, TrackerChoice::kPacked}) {
     const Work work = work_around(ring, tracker, 40);
     EXPECT_GT(work.shares.size(), 20u);
-    EXPECT_LT(work.mean, 1e-5) << kTrackerNames[static_cast<std::size_t>(tracker)];
+    EXPECT_LT(work.mean, 0.005) << kTrackerNames[static_cast<std::size_t>(tracker)];
   }
 }
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "surface/texture/height_image.h"
+#include "surface/height_image.h"
 #include "system/regular_file.h"
 
 namespace thimble::render {
@@ -81,8 +81,8 @@ class PngReader {
 };
 
 driver::Error broken(const std::filesystem::path& file, const std::string& why) {
-  return driver::Error{file.string() + ": not a readable height image (" + why +
-                       "); expected a PNG of at most 2048 by 2048 pixels."};
+  return driver::Error{file.string() + ": not a readable image (" + why +
+                       "); expected a PNG of at most 2048 by 2048 pixels"};
 }
 
 }  // namespace

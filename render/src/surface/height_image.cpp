@@ -1,4 +1,4 @@
-#include "surface/texture/height_image.h"
+#include "surface/height_image.h"
 
 #include <algorithm>
 #include <array>
