@@ -74,7 +74,7 @@ def all_there_is(source, build):
         "scenes": {file.stem for file in (source / "app/scenes").glob("*.yaml")},
         "arms": set(arms),
         "arms on USB": {name for name, protocol in arms.items() if protocol in WIRE},
-        "trackers": set(re.split(r", | or ", trackers)),
+        "trackers": set(re.split(r", | or ", trackers)) - {"auto"},  # chooses one of the others
     }
 
 

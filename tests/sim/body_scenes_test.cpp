@@ -125,7 +125,9 @@ TEST(BodyKeys, ErrorsNameTheWrongKey) {
   EXPECT_TRUE(says(refusal(ball, "{plastic: {edge: 0.001, triangles: 9.5}}"), "whole number"));
   const std::string felt = ball + ", contact: {tracker: god_object}";
   EXPECT_TRUE(says(refusal(felt, "{plastic: {edge: 0.001, triangles: 4}}"), "already has"));
-  EXPECT_TRUE(says(refusal(ball, "{plastic: {edge: 0.001}}"), "god_object"));
+  EXPECT_EQ(refusal(ball, "{plastic: {edge: 0.001}}"), "") << "the tracker is chosen";
+  const std::string flat = ball + ", contact: {tracker: edge_planes}";
+  EXPECT_TRUE(says(refusal(flat, "{plastic: {edge: 0.001}}"), "god_object"));
   EXPECT_TRUE(says(refusal(ball, "{plastic: {volume: full}}"), "kept"));
   EXPECT_TRUE(says(refusal(felt, "{plastic: {edge: 0.001}, dent: {}}"), "dent"));
   EXPECT_TRUE(says(refusal(ball, "{snap: {depth: 0.02, radius: 0.01}}"), "would fold"));

@@ -80,7 +80,7 @@ struct SceneObject {
 
   /// Returns whether texture coordinates or vertex colours of the mesh file are used. Real-time:
   /// never from the servo thread.
-  bool needs_maps() const;
+  THIMBLE_EXPORT bool needs_maps() const;
 };
 
 /// Place of one of several arms in a scene: a rotation about the vertical, then a translation.
