@@ -43,7 +43,7 @@ struct SceneBody {
 };
 
 /// Object of a scene: a mesh, a shape or a field, with its place and feel.
-struct SceneObject {
+struct THIMBLE_EXPORT SceneObject {
   std::string name;                 ///< Name, unique in the scene.
   std::filesystem::path mesh_file;  ///< Mesh file; empty for a shape or a field.
   bool paged = false;               ///< True if that is a page file, which stays mostly on disk.
@@ -80,7 +80,7 @@ struct SceneObject {
 
   /// Returns whether texture coordinates or vertex colours of the mesh file are used. Real-time:
   /// never from the servo thread.
-  THIMBLE_EXPORT bool needs_maps() const;
+  bool needs_maps() const;
 };
 
 /// Place of one of several arms in a scene: a rotation about the vertical, then a translation.
