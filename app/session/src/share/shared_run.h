@@ -12,6 +12,7 @@
 #include "share/shared_layout.h"
 #include "share/shared_memory.h"
 #include "share/shared_scene.h"
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
 namespace thimble::render {
@@ -22,7 +23,7 @@ namespace thimble::session {
 
 /// Returns an error if a scene has more objects than viewers can show. Real-time: never from the
 /// servo thread.
-driver::Result<void> check_object_count(std::size_t count);
+THIMBLE_EXPORT driver::Result<void> check_object_count(std::size_t count);
 
 /// Run's access to the memory that it shares with its viewers. The servo stores its state and reads
 /// requests, and never waits.
