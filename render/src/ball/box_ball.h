@@ -2,29 +2,22 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <span>
 
 #include "ball/ball_feature.h"
 #include "ball/ball_source.h"
+#include "ball/convex_ball.h"
 #include "thimble/render/field/box.h"
 #include "world_solid.h"
 
 namespace thimble::render {
 
 /// BallSource over a box without a mesh. W, m.
-class BoxBall {
+class BoxBall : public ConvexBall<BoxBall> {
  public:
   /// Takes the box and the radius of the ball, m, > 0.
-  BoxBall(const Box& box, double radius) noexcept : box_(box), radius_(radius) {}
+  BoxBall(const Box& box, double radius) noexcept : ConvexBall<BoxBall>(radius), box_(box) {}
 
-  std::span<const BallFeature> features(const Eigen::Vector3d& q, double& reach) noexcept {
-    reach = std::numeric_limits<double>::infinity();
-    feature_ = feature(0, q);
-    return {&feature_, 1};
-  }
   /// Precondition: the centre is outside of the box. `id` has no meaning here.
   BallFeature feature(std::int32_t, const Eigen::Vector3d& q) const noexcept {
     const Eigen::Vector3d q_O = box_.to_box(q);
@@ -50,21 +43,8 @@ class BoxBall {
                                : BallFeature::Kind::kFace;
     return found;
   }
-  bool clear(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const noexcept {
-    return (from - clear_centre_).squaredNorm() < clear_squared_ &&
-           (to - clear_centre_).squaredNorm() < clear_squared_;
-  }
-  SolidEntry first_entry(const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {
-    if (clear(from, to)) return {};
-    const BallFeature begin = feature(0, from);
-    // Written so that NaN meets nothing.
-    if (!(begin.gap >= -4 * rounding())) return {};
-    clear_centre_ = from;
-    clear_squared_ = begin.gap > 0 ? (1 - 0x1p-20) * begin.gap * begin.gap : -1;
-    const double share = meets_convex(from, to, rounding(), 1,
-                                      [this](const Eigen::Vector3d& x) { return feature(0, x); });
-    if (!(share <= 1)) return {};
-    return {.triangle = feature(0, from + share * (to - from)).id, .parameter = share};
+  bool in_solid(const Eigen::Vector3d& q) const noexcept {
+    return (box_.to_box(q).cwiseAbs() - box_.half_sides).maxCoeff() < 0;
   }
   bool inside(const Eigen::Vector3d& q) const noexcept {
     const Eigen::Vector3d beside = (box_.to_box(q).cwiseAbs() - box_.half_sides).cwiseMax(0.0);
@@ -74,18 +54,12 @@ class BoxBall {
     const Eigen::Vector3d half = box_.R_WO.cwiseAbs() * box_.half_sides;
     return {(box_.p_WO - half).array() - radius_, (box_.p_WO + half).array() + radius_};
   }
-  double radius() const noexcept { return radius_; }
   double rounding() const noexcept {
     return 64 * 0x1p-53 * (2 * box_.half_sides.norm() + box_.p_WO.norm() + radius_);
   }
 
  private:
   Box box_;
-  double radius_ = 0;
-  BallFeature feature_;
-  // A ball of centres without contact.
-  Eigen::Vector3d clear_centre_{0, 0, 0};
-  double clear_squared_ = -1;
 };
 
 static_assert(BallSource<BoxBall>);

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <span>
 
 #include "ball/ball_feature.h"
 #include "ball/ball_source.h"
+#include "ball/convex_ball.h"
 #include "thimble/render/field/round_shapes.h"
 #include "world_solid.h"
 
@@ -48,16 +47,12 @@ inline OutlinePoint closest_on_outline(const Cone& cone, double rho, double z) n
 
 /// BallSource over a cylinder or a cone without a mesh. W, m.
 template <class Shape>
-class RoundBall {
+class RoundBall : public ConvexBall<RoundBall<Shape>> {
  public:
   /// Takes the shape and the radius of the ball, m, > 0.
-  RoundBall(const Shape& shape, double radius) noexcept : shape_(shape), radius_(radius) {}
+  RoundBall(const Shape& shape, double radius) noexcept
+      : ConvexBall<RoundBall<Shape>>(radius), shape_(shape) {}
 
-  std::span<const BallFeature> features(const Eigen::Vector3d& q, double& reach) noexcept {
-    reach = std::numeric_limits<double>::infinity();
-    feature_ = feature(0, q);
-    return {&feature_, 1};
-  }
   /// Precondition: the centre is outside of the shape. `id` has no meaning here.
   BallFeature feature(std::int32_t, const Eigen::Vector3d& q) const noexcept {
     const RoundFrame::Meridian m = shape_.meridian(q, Eigen::Vector3d::Zero());
@@ -72,47 +67,27 @@ class RoundBall {
             // Towards the axis, circles on the shape are smaller than at the centre of the ball.
             .bend_along = out > 0 ? out / m.rho : 0,
             .bend_across = c.corner ? 1.0 : 0.0,
-            .gap = distance - radius_};
+            .gap = distance - this->radius_};
   }
-  bool clear(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const noexcept {
-    return (from - clear_centre_).squaredNorm() < clear_squared_ &&
-           (to - clear_centre_).squaredNorm() < clear_squared_;
-  }
-  SolidEntry first_entry(const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {
-    if (clear(from, to) || shape_.inside(from)) return {};
-    const BallFeature begin = feature(0, from);
-    // Written so that NaN meets nothing.
-    if (!(begin.gap >= -4 * rounding())) return {};
-    clear_centre_ = from;
-    clear_squared_ = begin.gap > 0 ? (1 - 0x1p-20) * begin.gap * begin.gap : -1;
-    const double share = meets_convex(from, to, rounding(), 1,
-                                      [this](const Eigen::Vector3d& x) { return feature(0, x); });
-    if (!(share <= 1)) return {};
-    return {.triangle = feature(0, from + share * (to - from)).id, .parameter = share};
-  }
+  bool in_solid(const Eigen::Vector3d& q) const noexcept { return shape_.inside(q); }
   bool inside(const Eigen::Vector3d& q) const noexcept {
-    return shape_.inside(q) || feature(0, q).gap < 0;
+    return in_solid(q) || feature(0, q).gap < 0;
   }
   SolidBox box() const noexcept {
     const Eigen::Array3d axis_W = shape_.R_WO.col(2).array();
     // A margin for rounding, also of the direction of the axis.
     const Eigen::Vector3d reach =
         (1 + 0x1p-40) * (shape_.half_height * axis_W.abs() +
-                         shape_.radius * (1 - axis_W.square()).max(0x1p-40).sqrt() + radius_);
+                         shape_.radius * (1 - axis_W.square()).max(0x1p-40).sqrt() + this->radius_);
     return {shape_.p_WO - reach, shape_.p_WO + reach};
   }
-  double radius() const noexcept { return radius_; }
   double rounding() const noexcept {
-    return 64 * 0x1p-53 * (2 * (shape_.half_height + shape_.radius) + shape_.p_WO.norm() + radius_);
+    return 64 * 0x1p-53 *
+           (2 * (shape_.half_height + shape_.radius) + shape_.p_WO.norm() + this->radius_);
   }
 
  private:
   Shape shape_;
-  double radius_ = 0;
-  BallFeature feature_;
-  // A ball of centres without contact.
-  Eigen::Vector3d clear_centre_{0, 0, 0};
-  double clear_squared_ = -1;
 };
 
 static_assert(BallSource<RoundBall<Cylinder>> && BallSource<RoundBall<Cone>>);

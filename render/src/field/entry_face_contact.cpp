@@ -9,8 +9,7 @@ namespace thimble::render {
 
 const ContactState& EntryFaceContact::update(const driver::DeviceState& state) noexcept {
   const Eigen::Vector3d& p_WT = state.p_WT;
-  // Written so that NaN is out of range.
-  if (!(p_WT.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kPositionMax)) {
+  if (!within_range(p_WT)) {
     state_ = {};
     has_before_ = false;
     return state_;

@@ -26,8 +26,7 @@ class FacedContact {
   /// of EntryFaceContact::update. Real-time: safe; tens of ns.
   const ContactState& update(const driver::DeviceState& state) noexcept {
     const Eigen::Vector3d& p_WT = state.p_WT;
-    // Written so that NaN is out of range.
-    if (!(p_WT.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kPositionMax)) {
+    if (!within_range(p_WT)) {
       state_ = {};
       has_before_ = false;
       return state_;

@@ -45,8 +45,7 @@ class PrimitiveContact {
   /// makes the next tick a first one. Real-time: safe; a few ns.
   const ContactState& update(const driver::DeviceState& state) noexcept {
     const Eigen::Vector3d& p_WT = state.p_WT;
-    // Written so that NaN is out of range.
-    if (!(p_WT.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kPositionMax)) {
+    if (!within_range(p_WT)) {
       state_ = {};
       was_outside_ = false;
       return state_;

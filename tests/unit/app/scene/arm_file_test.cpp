@@ -10,6 +10,7 @@
 
 #include "energy_guard_settings.h"
 #include "motion_watch_settings.h"
+#include "support/number_limits.h"
 #include "support/scratch.h"
 
 namespace thimble::scene {
@@ -276,11 +277,7 @@ TEST(ArmFile, RejectsUnsafeLimitsWithTheirLine) {
 // and after it places it in the file. Other mistakes, such as a contradiction of two keys, are
 // irrelevant here.
 TEST(ArmFile, AcceptsEachNumberUpToItsLimitsOnly) {
-  struct Limits {
-    const char *piece, *before, *after;
-    double min, max;
-  };
-  const Limits all[] = {
+  const support::NumberLimits all[] = {
       {"height: 0 ", "height: ", " ", -1, 1},
       {"length_b: 0.138", "length_b: ", "", 0.01, 1},
       {"length_c: 0.112", "length_c: ", "", 0.01, 1},
@@ -307,18 +304,9 @@ TEST(ArmFile, AcceptsEachNumberUpToItsLimitsOnly) {
       {"  power_max:", "  energy_reservoir: ", "\n  power_max:", 1e-6, 10},
       {"  power_max:", "  energy_slope: ", "\n  power_max:", 0.1, 1e6},
   };
-  for (const Limits& key : all) {
-    const auto is_refused = [&key](double value) {
-      std::ostringstream text;
-      text.precision(12);
-      text << key.before << value << key.after;
-      return mistake_with(key.piece, text.str()).find(": expected a number from ") !=
-             std::string::npos;
-    };
-    EXPECT_FALSE(is_refused(key.min)) << key.before << key.min;
-    EXPECT_FALSE(is_refused(key.max)) << key.before << key.max;
-    EXPECT_TRUE(is_refused(key.min - 1e-6 * std::abs(key.max))) << key.before << " below";
-    EXPECT_TRUE(is_refused(key.max + 1e-6 * std::abs(key.max))) << key.before << " above";
+  for (const support::NumberLimits& key : all) {
+    support::expect_accepted_up_to_limits(
+        key, [](const char* piece, const std::string& by) { return mistake_with(piece, by); });
   }
 }
 

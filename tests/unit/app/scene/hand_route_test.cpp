@@ -228,11 +228,17 @@ TEST(HandRoute, GoesOverTheEdgesOfACube) {
   }
 }
 
-TEST(HandRoute, BeginsADetourThroughSpaceAtTheTarget) {
+/// Two cubes of 20 mm, 60 mm apart, in one mesh.
+render::TriangleMesh two_cubes() {
   render::TriangleMesh two = support::box(Vector3d::Constant(0.01));
   const render::TriangleMesh other = two;
   for (const Vector3d& p : other.vertices) two.vertices.push_back(p + Vector3d(0.06, 0, 0));
   for (const auto& [a, b, c] : other.triangles) two.triangles.push_back({a + 8, b + 8, c + 8});
+  return two;
+}
+
+TEST(HandRoute, BeginsADetourThroughSpaceAtTheTarget) {
+  const render::TriangleMesh two = two_cubes();
   const auto route =
       plan_on_sphere({on(0, {0, 0, 0.01}, 0.001), on(1, {0.06, 0, 0.01}, 0.001)}, two);
   ASSERT_TRUE(route.ok()) << route.error().message;
@@ -255,10 +261,7 @@ TEST(SurfaceRoute, PathIsCloselySpaced) {
 }
 
 TEST(HandRoute, LeavesTheSurfaceBetweenUnconnectedParts) {
-  render::TriangleMesh two = support::box(Vector3d::Constant(0.01));
-  const render::TriangleMesh other = two;
-  for (const Vector3d& p : other.vertices) two.vertices.push_back(p + Vector3d(0.06, 0, 0));
-  for (const auto& [a, b, c] : other.triangles) two.triangles.push_back({a + 8, b + 8, c + 8});
+  const render::TriangleMesh two = two_cubes();
   const auto route =
       plan_on_sphere({on(0, {0, 0, 0.01}, 0.001), on(1, {0.06, 0, 0.01}, 0.001)}, two);
   ASSERT_TRUE(route.ok()) << route.error().message;
@@ -268,6 +271,7 @@ TEST(HandRoute, LeavesTheSurfaceBetweenUnconnectedParts) {
     EXPECT_LT(((*route)[i].second - (*route)[i - 1].second).norm(), 0.002);
   }
   // There is no path from the outside into a cavity.
+  const render::TriangleMesh other = support::box(Vector3d::Constant(0.01));
   render::TriangleMesh hollow = support::box(Vector3d::Constant(0.02));
   for (const Vector3d& p : other.vertices) hollow.vertices.push_back(p);
   for (const auto& [a, b, c] : other.triangles) hollow.triangles.push_back({a + 8, c + 8, b + 8});

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/number_limits.h"
 #include "support/scratch.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/simulated_device.h"
@@ -185,11 +186,7 @@ TEST(SimulationSection, RefusesADriveTrainOfTheFalcon) {
 }
 
 TEST(SimulationSection, AcceptsEachNumberUpToItsLimitsOnly) {
-  struct Limits {
-    const char *piece, *before, *after;
-    double min, max;
-  };
-  const Limits all[] = {
+  const support::NumberLimits all[] = {
       {"    mass: 0.075", "    mass: ", "", 1e-3, 10},
       {"viscous: 0.005", "viscous: ", "", 0, 100},
       {"    coulomb: 0.04", "    coulomb: ", "", 0, 10},
@@ -208,18 +205,9 @@ TEST(SimulationSection, AcceptsEachNumberUpToItsLimitsOnly) {
       {"tremor_amplitude: 0.00005", "tremor_amplitude: ", "", 0, 0.01},
       {"tremor_frequency: 10", "tremor_frequency: ", "", 0.1, 100},
   };
-  for (const Limits& key : all) {
-    const auto is_refused = [&key](double value) {
-      std::ostringstream text;
-      text.precision(12);
-      text << key.before << value << key.after;
-      return mistake_with(key.piece, text.str()).find(": expected a number from ") !=
-             std::string::npos;
-    };
-    EXPECT_FALSE(is_refused(key.min)) << key.before << key.min;
-    EXPECT_FALSE(is_refused(key.max)) << key.before << key.max;
-    EXPECT_TRUE(is_refused(key.min - 1e-6 * key.max)) << key.before << " below";
-    EXPECT_TRUE(is_refused(key.max + 1e-6 * key.max)) << key.before << " above";
+  for (const support::NumberLimits& key : all) {
+    support::expect_accepted_up_to_limits(
+        key, [](const char* piece, const std::string& by) { return mistake_with(piece, by); });
   }
 }
 
