@@ -99,18 +99,28 @@ class RigidMotion {
   }
   void step(double step) noexcept {
     body_.step(step);
+    take_place();
+  }
+  /// Moves the body instead of a step, as RigidBody::place.
+  void place(const Eigen::Vector3d& p_WC, const Eigen::Quaterniond& q_WB,
+             const Eigen::Vector3d& v_W, const Eigen::Vector3d& omega_W) noexcept {
+    body_.place(p_WC, q_WB, v_W, omega_W);
+    take_place();
+  }
+  /// Returns the energy of motion and height, J (see BodyMotion). Real-time: safe.
+  double energy() const noexcept { return body_.kinetic_energy() + body_.potential_energy(); }
+  const RigidBody& body() const noexcept { return body_; }
+  /// Returns the body, to set its velocity or its load before a tick.
+  RigidBody& body() noexcept { return body_; }
+
+ private:
+  void take_place() noexcept {
     body_.keep_within(reach_);
     const MassProperties& first = body_.settings().mass;
     R_WB_ = (body_.q_WB() * first.q_WB.conjugate()).normalized().toRotationMatrix();
     p_WB_ = body_.p_WC() - R_WB_ * first.p_WC;
   }
-  /// Returns the energy of motion and height, J (see BodyMotion). Real-time: safe.
-  double energy() const noexcept { return body_.kinetic_energy() + body_.potential_energy(); }
-  const RigidBody& body() const noexcept { return body_; }
-  /// Returns the body, to set its velocity before the first tick.
-  RigidBody& body() noexcept { return body_; }
 
- private:
   RigidBody body_;
   double reach_;
   Eigen::Matrix3d R_WB_ = Eigen::Matrix3d::Identity();

@@ -104,4 +104,15 @@ class HeldTouch final : public ObjectTouch {
   bool slipped_ = false;
 };
 
+/// Returns the force law of an object that moves, held by the hand if the choice says so.
+/// Real-time: never from the servo thread.
+template <BodyMotion Motion>
+std::unique_ptr<ObjectTouch> moving_touch(std::unique_ptr<ObjectTouch> surface,
+                                          const Motion& motion, const MotionChoice& choice,
+                                          const BodyCoupling& coupling) {
+  auto object = std::make_unique<MovingTouch<Motion>>(std::move(surface), motion, coupling);
+  if (!choice.grip) return object;
+  return std::make_unique<HeldTouch<Motion>>(std::move(object), *choice.grip, coupling.step);
+}
+
 }  // namespace thimble::render

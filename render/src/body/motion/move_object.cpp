@@ -7,7 +7,6 @@
 
 #include "body/motion/body_motions.h"
 #include "body/motion/held_touch.h"
-#include "body/motion/moving_touch.h"
 #include "body/motion/support_points.h"
 
 namespace thimble::render {
@@ -45,15 +44,6 @@ driver::Result<void> check_grip(const MotionChoice& choice) {
   return {};
 }
 
-/// Returns the force law of an object that moves, held by the hand if the choice says so.
-template <class Motion>
-std::unique_ptr<ObjectTouch> moving(std::unique_ptr<ObjectTouch> surface, const Motion& motion,
-                                    const MotionChoice& choice, const BodyCoupling& coupling) {
-  auto object = std::make_unique<MovingTouch<Motion>>(std::move(surface), motion, coupling);
-  if (!choice.grip) return object;
-  return std::make_unique<HeldTouch<Motion>>(std::move(object), *choice.grip, coupling.step);
-}
-
 // GCC 12 for ARM treats the storage of an empty optional floor as read.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
@@ -84,6 +74,17 @@ using AnyMotion = std::variant<TranslatingMotion, RigidMotion>;
 /// Returns the motion of an object. Errors: as `move_object`.
 driver::Result<AnyMotion> motion_of(const TriangleMesh& mesh_W, const MotionChoice& choice,
                                     const BodyCoupling& coupling) {
+  // The numbers are checked for both kinds.
+  auto rigid = rigid_motion_of(mesh_W, choice);
+  if (!rigid) return rigid.error();
+  if (choice.kind == MotionKind::kTranslate) return AnyMotion(three_ways(mesh_W, choice, coupling));
+  return AnyMotion(std::move(rigid).value());
+}
+
+}  // namespace
+
+driver::Result<RigidMotion> rigid_motion_of(const TriangleMesh& mesh_W,
+                                            const MotionChoice& choice) {
   if (!(choice.reach >= 0)) return driver::Error{"The reach of a body must be 0 m or more."};
   if (!choice.v_W.allFinite() || !choice.omega_W.allFinite()) {
     return driver::Error{"The initial velocities of a body must be finite."};
@@ -105,15 +106,11 @@ driver::Result<AnyMotion> motion_of(const TriangleMesh& mesh_W, const MotionChoi
   auto body = RigidBody::build(settings);
   if (!body) return body.error();
   if (auto held = check_grip(choice); !held) return held.error();
-  // The numbers have been checked for both kinds.
-  if (choice.kind == MotionKind::kTranslate) return AnyMotion(three_ways(mesh_W, choice, coupling));
   const Eigen::Vector3d omega_B = mass->q_WB.conjugate() * choice.omega_W;
   body->set_momentum(choice.mass * choice.v_W / choice.time_scale,
                      mass->q_WB * mass->inertia.cwiseProduct(omega_B) / choice.time_scale);
-  return AnyMotion(RigidMotion(*body, choice.reach));
+  return RigidMotion(*body, choice.reach);
 }
-
-}  // namespace
 
 void MotionChoice::read(SettingsReader& reader) {
   std::size_t ways = 0;
@@ -162,7 +159,9 @@ Moved move_object(std::unique_ptr<ObjectTouch> surface, const TriangleMesh& mesh
   const auto motion = motion_of(mesh_W, choice, coupling);
   if (!motion) return motion.error();
   return std::visit(
-      [&](const auto& own) { return Moved(moving(std::move(surface), own, choice, coupling)); },
+      [&](const auto& own) {
+        return Moved(moving_touch(std::move(surface), own, choice, coupling));
+      },
       *motion);
 }
 
@@ -177,7 +176,7 @@ driver::Result<SharedObject> move_shared_object(std::vector<std::unique_ptr<Obje
         const auto body = std::make_shared<SharedBodyOf<Motion>>(own);
         SharedObject object{.touches = {}, .body = body};
         for (auto& surface : surfaces) {
-          object.touches.push_back(moving(
+          object.touches.push_back(moving_touch(
               std::move(surface), SharedMotion<Motion>(body, surfaces.size()), choice, coupling));
         }
         return driver::Result<SharedObject>(std::move(object));

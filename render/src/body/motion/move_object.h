@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "body/motion/body_motions.h"
 #include "body/motion/shared_body.h"
 #include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
@@ -18,6 +19,10 @@ namespace thimble::render {
 THIMBLE_EXPORT driver::Result<std::unique_ptr<ObjectTouch>> move_object(
     std::unique_ptr<ObjectTouch> surface, const TriangleMesh& mesh_W, const MotionChoice& choice,
     const BodyCoupling& coupling);
+
+/// Returns the motion of an object with six degrees of freedom, with its mass and first velocities,
+/// for all kinds of motion. Errors and time: as `move_object`.
+driver::Result<RigidMotion> rigid_motion_of(const TriangleMesh& mesh_W, const MotionChoice& choice);
 
 /// An object that several hands touch: one force law per hand, and the shared body.
 struct SharedObject {

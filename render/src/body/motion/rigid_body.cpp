@@ -61,6 +61,22 @@ void RigidBody::push(const Vector3d& f_W, const Vector3d& p_W) noexcept {
   tau_W_ += tau;
 }
 
+void RigidBody::load(const Vector3d& f_W, const Vector3d& tau_W) noexcept {
+  if (!is_force(f_W) || !is_force(tau_W)) return;
+  f_W_ = f_W;
+  tau_W_ = tau_W;
+}
+
+void RigidBody::place(const Vector3d& p_WC, const Eigen::Quaterniond& q_WB, const Vector3d& v_W,
+                      const Vector3d& omega_W) noexcept {
+  p_WC_ = p_WC;
+  q_WB_ = q_WB;
+  momentum_W_ = settings_.mass.mass * v_W;
+  angular_W_ = q_WB * settings_.mass.inertia.cwiseProduct(q_WB.conjugate() * omega_W);
+  f_W_.setZero();
+  tau_W_.setZero();
+}
+
 Vector3d RigidBody::omega_W() const noexcept {
   const Vector3d angular_B = q_WB_.conjugate() * angular_W_;
   return q_WB_ * angular_B.cwiseQuotient(settings_.mass.inertia);

@@ -47,6 +47,13 @@ class THIMBLE_EXPORT RigidBody {
   /// Pushes with `f_W` (N) at the point `p_W` (m), and turns with `tau_W` (N m), during the next
   /// step. Values that are NaN or beyond 10^6 are ignored.
   void push(const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_W) noexcept;
+  /// Sets the force (N) and the torque about C (N m) of all pushes during the next step. Values
+  /// that are NaN or beyond 10^6 are ignored.
+  void load(const Eigen::Vector3d& f_W, const Eigen::Vector3d& tau_W) noexcept;
+  /// Moves the body and sets its velocities (m/s, rad/s, in the body's own time). The pushes are
+  /// cleared.
+  void place(const Eigen::Vector3d& p_WC, const Eigen::Quaterniond& q_WB,
+             const Eigen::Vector3d& v_W, const Eigen::Vector3d& omega_W) noexcept;
   /// Advances by `step` s under the pushes, which are then cleared. An invalid step has no effect.
   void step(double step) noexcept;
 

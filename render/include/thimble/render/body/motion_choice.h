@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -29,6 +30,36 @@ struct Grip {
   double damping = 2;      ///< Damping, N s/m, >= 0.
   /// Largest force, N, > 0; under a larger one the object slips out of the hand permanently.
   double force_max = 4;
+};
+
+/// Shape by which an object collides with other bodies.
+enum class CollisionShape : std::uint8_t {
+  kOwn,     ///< That of a shape; the convex hull of a mesh that moves; a mesh that does not move.
+  kHull,    ///< Convex hull.
+  kBox,     ///< Smallest of three boxes around it: along its principal axes, its place, the world.
+  kSphere,  ///< Sphere of the same volume around its centre of mass.
+  kMesh,    ///< All triangles; slow if it moves.
+  kPieces,  ///< Convex pieces, for a body with hollows.
+  kNone,    ///< Does not collide.
+};
+
+/// Collisions of one object with bodies.
+struct THIMBLE_EXPORT CollisionChoice {
+  CollisionShape shape = CollisionShape::kOwn;  ///< Shape.
+  double friction = 0.5;                        ///< Coulomb friction, >= 0; a pair has the
+                                                ///< geometric mean.
+  double restitution = 0;                       ///< Speed after an impact over that before, 0 to 1;
+                                                ///< a pair has the larger one.
+  std::size_t pieces = 16;                      ///< Largest number of convex pieces; kPieces only.
+
+  /// Reads the settings from a scene. Real-time: never from the servo thread.
+  void read(SettingsReader& reader);
+};
+
+/// Accuracy of collisions.
+struct CollisionQuality {
+  std::size_t iterations = 50;  ///< Iterations of the solver in each step, >= 1.
+  std::size_t substeps = 1;     ///< Steps of the solver in each tick, >= 1.
 };
 
 /// Motion of one object. By default the object starts at rest at the place of its mesh.

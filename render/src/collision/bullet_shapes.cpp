@@ -1,0 +1,185 @@
+#include "collision/bullet_shapes.h"
+
+#include <BulletCollision/CollisionDispatch/btInternalEdgeUtility.h>
+#include <BulletCollision/CollisionShapes/btTriangleInfoMap.h>
+#include <BulletCollision/Gimpact/btGImpactShape.h>
+#include <LinearMath/btConvexHullComputer.h>
+#include <btBulletCollisionCommon.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "collision/bullet_units.h"
+
+namespace thimble::render {
+namespace {
+
+// Bullet finds contacts of shapes that overlap by less than their margins more exactly than of
+// deeper ones [Bullet]. Boxes, cylinders and cones contain theirs. [chosen: a twentieth of the
+// body]
+constexpr double kMargin = 0.05;
+// Hulls and triangles grow by theirs. [chosen: a thousandth, below what a hand feels]
+constexpr double kThin = 1e-3;
+constexpr double kHalfSpaceSide = 10;  // m
+
+}  // namespace
+
+struct BulletShapes::Parts {
+  std::vector<std::unique_ptr<btCollisionShape>> shapes;
+  std::vector<std::unique_ptr<btTriangleIndexVertexArray>> arrays;
+  std::vector<std::unique_ptr<btTriangleInfoMap>> edges;
+  std::vector<std::vector<btScalar>> points;
+  std::vector<std::vector<int>> triangles;
+  std::unique_ptr<btCompoundShape> compound;
+  bool surface = false;
+};
+
+namespace {
+
+std::vector<btScalar> scaled(const std::vector<Eigen::Vector3d>& points, double scale) {
+  std::vector<btScalar> out;
+  out.reserve(3 * points.size());
+  for (const Eigen::Vector3d& p : points) {
+    for (int k = 0; k < 3; ++k) out.push_back(scale * p[k]);
+  }
+  return out;
+}
+
+/// Returns half the least side of the box of some points (three numbers each).
+double inner_of(const std::vector<btScalar>& points) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t i = k; i < points.size(); i += 3) {
+      low = std::min(low, points[i]);
+      high = std::max(high, points[i]);
+    }
+    least = std::min(least, (high - low) / 2);
+  }
+  return std::max(least, 0.0);
+}
+
+/// Returns the hull of some points. Its margin is added to it in contact with all but other hulls.
+std::unique_ptr<btConvexHullShape> hull_of(const std::vector<btScalar>& points) {
+  btConvexHullComputer corners;
+  corners.compute(points.data(), 3 * static_cast<int>(sizeof(btScalar)),
+                  static_cast<int>(points.size() / 3), 0, 0);
+  auto hull = std::make_unique<btConvexHullShape>();
+  for (int i = 0; i < corners.vertices.size(); ++i) hull->addPoint(corners.vertices[i], false);
+  hull->setMargin(kThin * inner_of(points));
+  hull->recalcLocalAabb();
+  hull->initializePolyhedralFeatures();
+  return hull;
+}
+
+/// Returns a box; it is a hull for contacts with hulls.
+std::unique_ptr<btBoxShape> box_of(const Eigen::Vector3d& half_sides) {
+  auto box = std::make_unique<btBoxShape>(to_bullet(half_sides));
+  box->initializePolyhedralFeatures();
+  return box;
+}
+
+}  // namespace
+
+BulletShapes::BulletShapes(const ColliderSet& set, double scale, bool moves)
+    : parts_(std::make_unique<Parts>()), inner_(std::numeric_limits<double>::infinity()) {
+  Parts& parts = *parts_;
+  std::vector<btTransform> places;
+  for (const Collider& collider : set.shapes) {
+    const Eigen::Vector3d size = scale * collider.size;
+    std::unique_ptr<btCollisionShape> shape;
+    double inner = size.x();
+    double above = 0;  // m, of the shape's centre over its frame's origin
+    switch (collider.form) {
+      case ColliderForm::kPoints: {
+        const std::vector<btScalar> points = scaled(collider.points, scale);
+        inner = inner_of(points);
+        shape = hull_of(points);
+        break;
+      }
+      case ColliderForm::kTriangles: {
+        parts.points.push_back(scaled(collider.points, scale));
+        inner = inner_of(parts.points.back());
+        auto& indices = parts.triangles.emplace_back();
+        for (const auto& triangle : collider.triangles) {
+          indices.insert(indices.end(), triangle.begin(), triangle.end());
+        }
+        parts.arrays.push_back(std::make_unique<btTriangleIndexVertexArray>(
+            static_cast<int>(collider.triangles.size()), indices.data(),
+            3 * static_cast<int>(sizeof(int)), static_cast<int>(collider.points.size()),
+            parts.points.back().data(), 3 * static_cast<int>(sizeof(btScalar))));
+        if (moves) {
+          auto mesh = std::make_unique<btGImpactMeshShape>(parts.arrays.back().get());
+          mesh->setMargin(kThin * inner);
+          mesh->updateBound();
+          shape = std::move(mesh);
+        } else {
+          auto mesh = std::make_unique<btBvhTriangleMeshShape>(parts.arrays.back().get(), true);
+          mesh->setMargin(kThin * inner);
+          parts.edges.push_back(std::make_unique<btTriangleInfoMap>());
+          btGenerateInternalEdgeInfo(mesh.get(), parts.edges.back().get());
+          parts.surface = true;
+          shape = std::move(mesh);
+        }
+        break;
+      }
+      case ColliderForm::kBox:
+        inner = size.minCoeff();
+        shape = box_of(size);
+        break;
+      case ColliderForm::kSphere:
+        shape = std::make_unique<btSphereShape>(size.x());
+        break;
+      case ColliderForm::kCylinder:
+        inner = std::min(size.x(), size.z());
+        shape = std::make_unique<btCylinderShapeZ>(btVector3(size.x(), size.x(), size.z()));
+        break;
+      case ColliderForm::kCone:
+        inner = std::min(size.x(), size.z());
+        shape = std::make_unique<btConeShapeZ>(size.x(), 2 * size.z());
+        break;
+      case ColliderForm::kCapsule:
+        shape = std::make_unique<btCapsuleShapeZ>(size.x(), 2 * size.z());
+        break;
+      case ColliderForm::kHalfSpace:
+        // As a box, because Bullet finds the corners of a body on a plane one by one, but those on
+        // a box all at once. An arm reaches less far. [chosen: 10 m]
+        inner = std::numeric_limits<double>::infinity();
+        shape = box_of(Eigen::Vector3d::Constant(scale * kHalfSpaceSide));
+        shape->setMargin(0);
+        above = -kHalfSpaceSide;
+        break;
+    }
+    // A sphere and a capsule are nothing but margin.
+    const bool has_margin = collider.form == ColliderForm::kBox ||
+                            collider.form == ColliderForm::kCylinder ||
+                            collider.form == ColliderForm::kCone;
+    if (has_margin) shape->setMargin(kMargin * inner);
+    inner_ = std::min(inner_, inner);
+    places.push_back(transform_of(collider.R, scale * (collider.p + above * collider.R.col(2))));
+    parts.shapes.push_back(std::move(shape));
+  }
+  const bool alone = parts.shapes.size() == 1 && places[0] == btTransform::getIdentity();
+  if (parts.shapes.empty() || alone) return;
+  parts.surface = false;
+  parts.compound = std::make_unique<btCompoundShape>();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    parts.compound->addChildShape(places[i], parts.shapes[i].get());
+  }
+}
+
+BulletShapes::BulletShapes(BulletShapes&&) noexcept = default;
+BulletShapes& BulletShapes::operator=(BulletShapes&&) noexcept = default;
+BulletShapes::~BulletShapes() = default;
+
+btCollisionShape* BulletShapes::whole() const noexcept {
+  if (parts_->compound) return parts_->compound.get();
+  return parts_->shapes.empty() ? nullptr : parts_->shapes.front().get();
+}
+
+bool BulletShapes::is_surface() const noexcept {
+  return parts_->surface;
+}
+
+}  // namespace thimble::render

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "body/motion/body_frame.h"
+#include "body/motion/body_motions.h"
+#include "body/motion/shared_body.h"
+#include "collision/collision_solver.h"
+#include "thimble/driver/result.h"
+
+namespace thimble::render {
+
+/// A spring between two bodies, or a body and the world.
+struct SpringJoint {
+  int a = -1;  ///< Number of a body; -1: the world.
+  int b = -1;
+  Eigen::Vector3d p_A{0, 0, 0};  ///< Its ends in the frames of the meshes of `a` and `b`, m.
+  Eigen::Vector3d p_B{0, 0, 0};
+  double stiffness = 0;  ///< N/m
+  double damping = 0;    ///< N s/m
+  double length = 0;     ///< m, at rest
+};
+
+/// Bodies that collide, with their joints, and the hands that push them.
+///
+/// A body that touches nothing moves by RigidBody, as without collisions: momentum and angular
+/// momentum are kept to rounding. The step of a body that touches something, or has a joint, is
+/// that of the solver.
+class CollisionWorld final : public SharedBody {
+ public:
+  /// A body: its motion without collisions, and whether it turns.
+  struct Member {
+    RigidMotion motion;
+    bool turns = true;
+  };
+
+  /// Takes the bodies and what they meet. `plan.bodies` and `members` are in the same order;
+  /// `hands` push them. Errors as build_collision_solver. Real-time: never from the servo thread.
+  static driver::Result<std::shared_ptr<CollisionWorld>> build(std::vector<Member> members,
+                                                               const SolverPlan& plan,
+                                                               std::vector<SpringJoint> springs,
+                                                               std::size_t hands);
+
+  // All of the following are Real-time: safe, except as CollisionSolver::step.
+
+  /// Returns the motion of a body.
+  const RigidMotion& motion(std::size_t body) const noexcept { return members_[body].motion; }
+  /// Returns the velocity that a body's point gains per impulse given there, 1/kg.
+  Eigen::Vector3d gain_at(std::size_t body, const Eigen::Vector3d& p_W,
+                          const Eigen::Vector3d& impulse) const noexcept;
+  /// Pushes a body with `f_W` (N) at `p_W` (m) during the next step; once per hand, body and step.
+  void push(std::size_t hand, std::size_t body, const Eigen::Vector3d& f_W,
+            const Eigen::Vector3d& p_W) noexcept;
+  /// Returns the stored energy of a hand (J), as SharedBodyOf::energy_for, of all bodies together.
+  double energy_for(std::size_t hand) const noexcept;
+  /// Notes that the force law of one body has ended its tick. If there is one hand, the last one
+  /// steps the world.
+  void end_of_body(double step) noexcept;
+
+  void step(double step) noexcept override;
+  Eigen::Vector3d momentum_W() const noexcept override;
+  /// Returns the angular momentum of all bodies about the origin of W, kg m^2/s.
+  Eigen::Vector3d angular_momentum_W() const noexcept override;
+
+  std::size_t hands() const noexcept { return hands_; }
+  std::size_t size() const noexcept { return members_.size(); }
+  const CollisionSolver& solver() const noexcept { return *solver_; }
+
+ private:
+  /// Push of a hand on a body in this tick.
+  struct Push {
+    Eigen::Vector3d f_W{0, 0, 0};
+    Eigen::Vector3d p_W{0, 0, 0};
+    double power = 0;  // W, before the step
+  };
+
+  CollisionWorld() = default;
+  double energy() const noexcept;
+  void pull_springs(double step) noexcept;
+  void push_at(std::size_t body, const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_W) noexcept;
+  Push& push_of(std::size_t hand, std::size_t body) noexcept {
+    return pushes_[hand * members_.size() + body];
+  }
+
+  std::vector<Member> members_;
+  std::unique_ptr<CollisionSolver> solver_;
+  std::vector<SpringJoint> springs_;
+  std::size_t hands_ = 1;
+  std::vector<SolverState> states_;
+  std::vector<Push> pushes_;   // of each hand and body
+  std::vector<double> given_;  // work of each hand, J
+  std::size_t ended_ = 0;      // bodies whose tick has ended
+  double first_ = 0;           // energy before any step, J
+  double lost_ = 0;            // largest loss of energy so far, J
+};
+
+}  // namespace thimble::render
