@@ -202,7 +202,7 @@ std::optional<SceneShape> read_shape(YamlMap& object, const Eigen::Matrix3d& R_W
 }
 
 SceneBody read_body(YamlMap& object, const std::filesystem::path& folder,
-                    const render::EffectContext& context) {
+                    const render::EffectContext& context, const Eigen::Vector3d& gravity_W) {
   SceneBody body;
   YamlMap map = object.require_map("body");
   const auto read = [&](const char* key, auto read_settings) {
@@ -214,7 +214,10 @@ SceneBody read_body(YamlMap& object, const std::filesystem::path& folder,
   read("dent", [&](auto& settings) { body.dent.emplace().read(settings, context); });
   read("plastic", [&](auto& settings) { body.shape.clay.emplace().read(settings); });
   read("snap", [&](auto& settings) { body.shape.snap.emplace().read(settings); });
-  read("motion", [&](auto& settings) { body.motion.emplace().read(settings); });
+  read("motion", [&](auto& settings) {
+    body.motion.emplace().gravity_W = gravity_W;
+    body.motion->read(settings);
+  });
   body.shape.step = context.tick;
   map.finish();
   return body;

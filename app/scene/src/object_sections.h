@@ -49,9 +49,10 @@ std::optional<SceneShape> read_shape(YamlMap& object, const Eigen::Matrix3d& R_W
                                      const Eigen::Vector3d& p_WO);
 
 /// Reads `body: {dent: {...}, plastic: {...}, snap: {...}, motion: {...}}` of an object. Files are
-/// relative to `folder`. Mistakes are recorded in `object`. Real-time: never from the servo thread.
+/// relative to `folder`. `gravity_W` (m/s^2) is that of motions which name none. Mistakes are
+/// recorded in `object`. Real-time: never from the servo thread.
 SceneBody read_body(YamlMap& object, const std::filesystem::path& folder,
-                    const render::EffectContext& context);
+                    const render::EffectContext& context, const Eigen::Vector3d& gravity_W);
 
 /// Returns the coupling of a surface to its body. Its stiffness is the larger of two values: that
 /// of the surface's own spring, doubled for a texture (whose slopes are at most 1), and that with

@@ -18,10 +18,12 @@
 #include "files/scene_paths.h"
 #include "hand/read_hand.h"
 #include "hand/scene_arms.h"
+#include "joints_section.h"
 #include "loop_latency.h"
 #include "object_sections.h"
 #include "read_scene.h"
 #include "yaml/yaml_reader.h"
+#include "yaml/yaml_settings.h"
 #include "yaml/yaml_words.h"
 
 namespace thimble::scene {
@@ -29,6 +31,7 @@ namespace {
 
 // The bounds catch misplaced decimal points and values in mm. They are far beyond what a desk-top
 // arm can use [DEVICES 3].
+constexpr double kGravityMax = 100;                   // m/s^2, as of a motion
 constexpr double kPositionMax = 2;                    // m
 constexpr double kStiffnessMax = 1e5;                 // N/m
 constexpr double kMapStiffnessMin = 1;                // N/m; less cannot be felt
@@ -195,13 +198,25 @@ void explain_unused_keys(YamlMap& map) {
        {"size", "scale", "repair", "open", "budget", "contact", "stiffness_map", "friction_map"}) {
     map.explain_unused(key, "needs mesh");
   }
-  for (const char* key : {"stiffness", "damping", "effects", "body"}) {
+  for (const char* key : {"stiffness", "damping", "effects", "body", "collision"}) {
     map.explain_unused(key, "needs a surface: a mesh or a shape");
   }
 }
 
+/// Reads how an object meets bodies.
+void read_collision(YamlMap& map, const std::filesystem::path& folder, SceneObject& object) {
+  if (!map.has("collision")) return;
+  YamlSettings settings(map.require_map("collision"), folder);
+  object.collision.read(settings);
+  settings.finish();
+  if (object.paged && object.collision.shape != render::CollisionShape::kNone) {
+    map.reject("collision", "of a page file can only be {shape: none}");
+  }
+}
+
 SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
-                        const std::filesystem::path& mesh_folder, render::EffectContext context) {
+                        const std::filesystem::path& mesh_folder, render::EffectContext context,
+                        const Eigen::Vector3d& gravity_W) {
   SceneObject object;
   object.name = map.require_string("name");
   int forms = 0;
@@ -260,7 +275,7 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   }
   if (!object.shape && map.has("friction_map")) read_friction_map(map, folder, object);
   if (map.has("body")) {
-    object.body = read_body(map, folder, context);
+    object.body = read_body(map, folder, context, gravity_W);
     const auto names = [&object](std::string_view group) {
       return std::any_of(object.effects.begin(), object.effects.end(),
                          [&](const auto& effect) { return effect.kind->group == group; });
@@ -277,6 +292,7 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
                  "of a shape can only be motion: dent, plastic and snap need a mesh; name a mesh");
     }
   }
+  read_collision(map, folder, object);
   check_maps(map, object);
   map.finish();
   return object;
@@ -412,10 +428,13 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
   if (!arm_error) {
     for (const SceneArm& one : scene.arms) check_stall(root, scene.rate, one.arm);
   }
+  const Eigen::Vector3d gravity_W =
+      root.optional_vector3("gravity", Eigen::Vector3d::Zero(), "m/s^2", -kGravityMax, kGravityMax);
   const render::EffectContext context = effect_context_of(scene.arms.front().arm, scene.rate);
   for (YamlMap& object : root.require_maps("objects")) {
-    scene.objects.push_back(read_object(object, folder, mesh_folder, context));
+    scene.objects.push_back(read_object(object, folder, mesh_folder, context, gravity_W));
   }
+  read_joints(root, folder, scene);
   if (root.has("tool")) read_tool(root.require_map("tool"), scene);
   std::unordered_set<std::string_view> names;
   for (const SceneObject& object : scene.objects) {

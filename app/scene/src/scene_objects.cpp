@@ -7,10 +7,12 @@
 #include <string>
 #include <unordered_map>
 #include <utility>
+#include <variant>
 
 #include "body/motion/move_object.h"
 #include "body/motion/shared_body.h"
 #include "build_paged_touch.h"
+#include "collision/collide_objects.h"
 #include "disk_paging/paged_surface.h"
 #include "meshes/mesh_join.h"
 #include "meshes/object_mesh.h"
@@ -68,9 +70,30 @@ Touched build_still(const SceneObject& object, const render::ContactChoice& cont
   return render::build_object_touch(**still, *mesh_W, contact, surface);
 }
 
+/// Returns whether bodies of a scene may meet something, or are held by joints.
+bool bodies_meet(const Scene& scene) {
+  if (!scene.joints.empty()) return true;
+  bool moves = false;
+  int solids = 0;
+  for (const SceneObject& object : scene.objects) {
+    const bool none = object.collision.shape == render::CollisionShape::kNone;
+    if (none || object.build_field || object.paged) continue;
+    ++solids;
+    moves = moves || object.body.motion.has_value();
+  }
+  return moves && solids > 1;
+}
+
+/// Returns whether a shape at rest collides as a mesh.
+bool needs_own_mesh(const SceneObject& object) {
+  const auto kind = object.collision.shape;
+  if (object.shape && std::holds_alternative<render::Torus>(object.shape->shape_W)) return true;
+  return kind != render::CollisionShape::kOwn && kind != render::CollisionShape::kNone;
+}
+
 /// Builds the force law of one object that is touched by one arm.
 Touched build_one(const SceneObject& object, const render::ContactChoice& contact,
-                  const MeshPointer& mesh_W, SharedMeshes& meshes, double reach,
+                  const MeshPointer& mesh_W, SharedMeshes& meshes, double reach, bool meets,
                   std::vector<std::shared_ptr<render::PagedSurface>>& pages) {
   if (object.build_field) return object.build_field();
   if (object.paged) {
@@ -89,7 +112,7 @@ Touched build_one(const SceneObject& object, const render::ContactChoice& contac
     return render::build_paged_touch(pages.back(), place, surface_of(object));
   }
   auto touch = build_still(object, contact, mesh_W, meshes);
-  if (touch && object.body.motion) {
+  if (touch && object.body.motion && !meets) {
     touch = render::move_object(std::move(touch).value(), *mesh_W, *object.body.motion,
                                 object.coupling);
   }
@@ -102,7 +125,7 @@ Touched build_one(const SceneObject& object, const render::ContactChoice& contac
 driver::Result<render::SharedObject> build_shared(const SceneObject& object,
                                                   const render::ContactChoice& contact,
                                                   const MeshPointer& mesh_W, SharedMeshes& meshes,
-                                                  std::size_t arms) {
+                                                  std::size_t arms, bool meets) {
   render::SharedObject shared;
   const bool deforms = object.body.dent || object.body.shape.named();
   if (deforms || object.paged) {
@@ -120,7 +143,7 @@ driver::Result<render::SharedObject> build_shared(const SceneObject& object,
     if (!touch) return refused(object, mesh_W, touch.error());
     shared.touches.push_back(std::move(touch).value());
   }
-  if (!object.body.motion) return shared;
+  if (!object.body.motion || meets) return shared;
   auto moved = render::move_shared_object(std::move(shared.touches), *mesh_W, *object.body.motion,
                                           object.coupling);
   if (!moved) return refused(object, mesh_W, moved.error());
@@ -235,25 +258,30 @@ driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(
   const std::size_t arms = scene.arms.size();
   const double reach = reach_of(scene);
   std::vector<std::vector<std::unique_ptr<render::ObjectTouch>>> touches(arms);
+  const bool meets = bodies_meet(scene);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     // Only a shape that moves needs its mesh, for its mass.
-    const bool needs_mesh = !object.shape || object.body.motion;
+    const bool needs_mesh =
+        !object.shape || object.body.motion || (meets && needs_own_mesh(object));
     const MeshPointer mesh_W = needs_mesh ? objects->shared_mesh_W(i) : nullptr;
     const bool has_tracker = tracker != objects->trackers_.end() && tracker->object == i;
     const render::ContactChoice& contact = has_tracker ? (tracker++)->contact : object.contact;
     if (arms == 1) {
-      auto touch = build_one(object, contact, mesh_W, *held, reach, objects->pages_);
+      auto touch = build_one(object, contact, mesh_W, *held, reach, meets, objects->pages_);
       if (!touch) return touch.error();
       touches[0].push_back(std::move(touch).value());
       continue;
     }
-    auto shared = build_shared(object, contact, mesh_W, *held, arms);
+    auto shared = build_shared(object, contact, mesh_W, *held, arms, meets);
     if (!shared) return shared.error();
     for (std::size_t arm = 0; arm < arms; ++arm) {
       touches[arm].push_back(std::move(shared->touches[arm]));
     }
     if (shared->body) objects->bodies_.push_back(std::move(shared->body));
+  }
+  if (meets) {
+    if (auto met = objects->let_meet(scene, touches); !met) return met.error();
   }
   for (auto& objects_of_arm : touches) {
     objects->touches_.push_back(std::make_unique<render::SceneTouch>(std::move(objects_of_arm)));
@@ -270,6 +298,43 @@ driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(
     objects->triangles_ += static_cast<std::size_t>(pages->triangle_count());
   }
   return objects;
+}
+
+driver::Result<void> SceneObjects::let_meet(const Scene& scene, Touches& touches) {
+  std::vector<render::CollidingObject> colliding;
+  std::vector<int> number_of(scene.objects.size(), -1);  // in `colliding`
+  std::vector<std::size_t> moving;                       // in the scene
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    if (object.build_field || object.paged) continue;
+    number_of[i] = static_cast<int>(colliding.size());
+    const bool has_mesh = !object.shape || object.body.motion || needs_own_mesh(object);
+    render::CollidingObject& one = colliding.emplace_back();
+    one.name = object.name;
+    one.solid = {.mesh_W = has_mesh ? &mesh_W(i) : nullptr,
+                 .shape_W = object.shape ? &object.shape->shape_W : nullptr};
+    one.collision = object.collision;
+    if (!object.body.motion) continue;
+    one.motion = object.body.motion;
+    one.coupling = object.coupling;
+    for (auto& of_arm : touches) one.surfaces.push_back(std::move(of_arm[i]));
+    moving.push_back(i);
+  }
+  std::vector<render::ObjectJoint> joints;
+  for (const SceneJoint& joint : scene.joints) {
+    const auto number = [&](int i) { return i < 0 ? -1 : number_of[static_cast<std::size_t>(i)]; };
+    joints.push_back({.choice = joint.choice, .a = number(joint.a), .b = number(joint.b)});
+  }
+  auto met =
+      render::collide_objects(std::move(colliding), joints, scene.collisions, touches.size());
+  if (!met) return met.error();
+  for (std::size_t k = 0; k < moving.size(); ++k) {
+    for (std::size_t arm = 0; arm < touches.size(); ++arm) {
+      touches[arm][moving[k]] = std::move(met->touches[k][arm]);
+    }
+  }
+  if (touches.size() > 1) bodies_.push_back(std::move(met->bodies));
+  return {};
 }
 
 std::vector<std::string> SceneObjects::tracker_notes(const Scene& scene) const {

@@ -12,7 +12,7 @@ namespace thimble::session {
 /// Poses of the moving objects of a scene after one tick, for observers. The driver's TickRecord
 /// contains no bodies; this complements it for scenes that have some.
 struct ScenePoses {
-  static constexpr std::size_t kMax = 16;  ///< Largest number of objects of a scene that may move.
+  static constexpr std::size_t kMax = 256;  ///< Largest number of objects of a scene that may move.
 
   std::uint64_t tick = 0;                     ///< Number of the tick.
   std::uint32_t count = 0;                    ///< Number of moving objects.

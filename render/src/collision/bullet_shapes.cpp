@@ -80,6 +80,48 @@ std::unique_ptr<btBoxShape> box_of(const Eigen::Vector3d& half_sides) {
   return box;
 }
 
+/// How a symmetric shape lies along the axes of its owner's frame, about its origin.
+struct Along {
+  bool found = false;
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  // rounded to -1, 0 and 1
+  int z = 2;                                           // axis of the owner along that of the shape
+  Eigen::Vector3d sizes(const Eigen::Vector3d& own) const { return (axes * own).cwiseAbs(); }
+};
+
+Along along_axes(const Collider& collider) {
+  constexpr double kRounding = 1e-9;
+  const double size = collider.size.cwiseAbs().maxCoeff();
+  Along along;
+  if (collider.form == ColliderForm::kSphere) {
+    along.found = collider.p.norm() <= kRounding * size;
+    return along;
+  }
+  const bool symmetric = collider.form == ColliderForm::kBox ||
+                         collider.form == ColliderForm::kCylinder ||
+                         collider.form == ColliderForm::kCapsule;
+  const Eigen::Matrix3d axes = collider.R.array().round();
+  along.found =
+      symmetric && collider.p.norm() <= kRounding * size && (axes - collider.R).norm() <= kRounding;
+  if (!along.found) return along;
+  along.axes = axes;
+  axes.col(2).cwiseAbs().maxCoeff(&along.z);
+  return along;
+}
+
+std::unique_ptr<btCollisionShape> cylinder_of(const Eigen::Vector3d& size, int z) {
+  btVector3 half(size.x(), size.x(), size.x());
+  half[z] = size.z();
+  if (z == 0) return std::make_unique<btCylinderShapeX>(half);
+  if (z == 1) return std::make_unique<btCylinderShape>(half);
+  return std::make_unique<btCylinderShapeZ>(half);
+}
+
+std::unique_ptr<btCollisionShape> capsule_of(const Eigen::Vector3d& size, int z) {
+  if (z == 0) return std::make_unique<btCapsuleShapeX>(size.x(), 2 * size.z());
+  if (z == 1) return std::make_unique<btCapsuleShape>(size.x(), 2 * size.z());
+  return std::make_unique<btCapsuleShapeZ>(size.x(), 2 * size.z());
+}
+
 }  // namespace
 
 BulletShapes::BulletShapes(const ColliderSet& set, double scale, bool moves)
@@ -88,6 +130,7 @@ BulletShapes::BulletShapes(const ColliderSet& set, double scale, bool moves)
   std::vector<btTransform> places;
   for (const Collider& collider : set.shapes) {
     const Eigen::Vector3d size = scale * collider.size;
+    const Along along = moves ? along_axes(collider) : Along{};
     std::unique_ptr<btCollisionShape> shape;
     double inner = size.x();
     double above = 0;  // m, of the shape's centre over its frame's origin
@@ -126,21 +169,21 @@ BulletShapes::BulletShapes(const ColliderSet& set, double scale, bool moves)
       }
       case ColliderForm::kBox:
         inner = size.minCoeff();
-        shape = box_of(size);
+        shape = box_of(along.sizes(size));
         break;
       case ColliderForm::kSphere:
         shape = std::make_unique<btSphereShape>(size.x());
         break;
       case ColliderForm::kCylinder:
         inner = std::min(size.x(), size.z());
-        shape = std::make_unique<btCylinderShapeZ>(btVector3(size.x(), size.x(), size.z()));
+        shape = cylinder_of(size, along.z);
         break;
       case ColliderForm::kCone:
         inner = std::min(size.x(), size.z());
         shape = std::make_unique<btConeShapeZ>(size.x(), 2 * size.z());
         break;
       case ColliderForm::kCapsule:
-        shape = std::make_unique<btCapsuleShapeZ>(size.x(), 2 * size.z());
+        shape = capsule_of(size, along.z);
         break;
       case ColliderForm::kHalfSpace:
         // As a box, because Bullet finds the corners of a body on a plane one by one, but those on
@@ -157,11 +200,17 @@ BulletShapes::BulletShapes(const ColliderSet& set, double scale, bool moves)
                             collider.form == ColliderForm::kCone;
     if (has_margin) shape->setMargin(kMargin * inner);
     inner_ = std::min(inner_, inner);
-    places.push_back(transform_of(collider.R, scale * (collider.p + above * collider.R.col(2))));
+    const Eigen::Vector3d middle = collider.p + above * collider.R.col(2);
+    places.push_back(along.found ? btTransform::getIdentity()
+                                 : transform_of(collider.R, scale * middle));
     parts.shapes.push_back(std::move(shape));
   }
-  const bool alone = parts.shapes.size() == 1 && places[0] == btTransform::getIdentity();
-  if (parts.shapes.empty() || alone) return;
+  if (parts.shapes.empty()) return;
+  // Bullet finds contacts ahead only with shapes that have no frame of their own.
+  if (parts.shapes.size() == 1 && (!moves || places[0] == btTransform::getIdentity())) {
+    place_ = places[0];
+    return;
+  }
   parts.surface = false;
   parts.compound = std::make_unique<btCompoundShape>();
   for (std::size_t i = 0; i < places.size(); ++i) {

@@ -25,6 +25,9 @@ class BulletShapes {
 
   /// Returns the whole; null if there is no shape.
   btCollisionShape* whole() const noexcept;
+  /// Returns the place of the whole in the owner's frame, if the owner does not move; the identity
+  /// for a body, which has its shape where it is.
+  btTransform place() const noexcept { return place_; }
   /// Returns half the least side of the smallest shape, in Bullet's units.
   double inner_radius() const noexcept { return inner_; }
   /// Returns whether the whole is a surface of triangles that never moves.
@@ -33,6 +36,7 @@ class BulletShapes {
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;
+  btTransform place_ = btTransform::getIdentity();
   double inner_ = 0;
 };
 

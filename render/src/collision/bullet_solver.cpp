@@ -1,5 +1,7 @@
+#include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btInternalEdgeUtility.h>
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
+#include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
@@ -9,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "collision/box_pair.h"
 #include "collision/bullet_shapes.h"
 #include "collision/bullet_units.h"
 #include "collision/collision_solver.h"
@@ -53,6 +56,101 @@ void set_pair_rules() {
   static_cast<void>(done);
 }
 
+/// A contact that rebounds, in Bullet's units.
+struct Rebound {
+  btRigidBody* a = nullptr;
+  btRigidBody* b = nullptr;
+  const btManifoldPoint* point = nullptr;
+  btVector3 normal;        // from b to a
+  btVector3 arm_a, arm_b;  // from the centres to the contact
+  btScalar wanted = 0;     // speed apart after the step
+  btScalar impulse = 0;
+};
+
+/// Bullet's dispatcher, which finds contacts before bodies overlap: as far ahead as two bodies can
+/// come within a step. So they are stopped where they touch. In Bullet's units.
+class ForesightedDispatcher final : public btCollisionDispatcher {
+ public:
+  using btCollisionDispatcher::btCollisionDispatcher;
+  /// Sets the step, s.
+  void look_ahead(double step) noexcept { step_ = step; }
+  btPersistentManifold* getNewManifold(const btCollisionObject* a,
+                                       const btCollisionObject* b) override {
+    btPersistentManifold* const manifold = btCollisionDispatcher::getNewManifold(a, b);
+    set_reach(*manifold);
+    return manifold;
+  }
+  /// Sets how far ahead the contacts of a pair are found.
+  void set_reach(btPersistentManifold& manifold) const noexcept {
+    btScalar reach = kLeast;
+    for (const btCollisionObject* object : {manifold.getBody0(), manifold.getBody1()}) {
+      btVector3 middle;
+      btScalar radius = 0;
+      object->getCollisionShape()->getBoundingSphere(middle, radius);
+      if (object->isStaticObject()) continue;
+      reach += step_ * (object->getInterpolationLinearVelocity().length() +
+                        object->getInterpolationAngularVelocity().length() * radius);
+    }
+    manifold.setContactBreakingThreshold(reach);
+  }
+
+ private:
+  static constexpr btScalar kLeast = 0.02;  // Bullet's own
+  double step_ = 1e-3;
+};
+
+/// Bullet's world, which tells the solver of contacts before their impulses are computed.
+class ObservedWorld final : public btDiscreteDynamicsWorld {
+ public:
+  using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
+  /// Sets what is called.
+  template <class Observer>
+  void observe(Observer* observer) noexcept {
+    observer_ = observer;
+    call_ = [](void* who) { static_cast<Observer*>(who)->note_approaches(); };
+  }
+
+ protected:
+  void performDiscreteCollisionDetection() override {
+    auto& dispatcher = *static_cast<ForesightedDispatcher*>(getDispatcher());
+    for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
+      btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
+      dispatcher.set_reach(manifold);
+      // A sphere has one point of contact with each convex body. Older ones would have another
+      // normal and push it forward.
+      if (has_sphere(manifold)) manifold.clearManifold();
+    }
+    btDiscreteDynamicsWorld::performDiscreteCollisionDetection();
+    for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
+      drop_drifted(*dispatcher.getManifoldByIndexInternal(m));
+    }
+  }
+  void solveConstraints(btContactSolverInfo& info) override {
+    if (call_ != nullptr) call_(observer_);
+    btDiscreteDynamicsWorld::solveConstraints(info);
+  }
+
+ private:
+  static bool has_sphere(const btPersistentManifold& manifold) noexcept {
+    return manifold.getBody0()->getCollisionShape()->getShapeType() == SPHERE_SHAPE_PROXYTYPE ||
+           manifold.getBody1()->getCollisionShape()->getShapeType() == SPHERE_SHAPE_PROXYTYPE;
+  }
+  // Removes points whose ends have moved apart along the surface. Bullet does so too, but by the
+  // distance at which it finds contacts ahead.
+  static void drop_drifted(btPersistentManifold& manifold) noexcept {
+    constexpr btScalar kDrift = 0.02;  // Bullet's own limit
+    for (int p = manifold.getNumContacts() - 1; p >= 0; --p) {
+      const btManifoldPoint& point = manifold.getContactPoint(p);
+      const btVector3 apart = point.getPositionWorldOnA() - point.getPositionWorldOnB();
+      const btVector3 along = apart - point.m_normalWorldOnB * apart.dot(point.m_normalWorldOnB);
+      if (along.length2() > kDrift * kDrift) manifold.removeContactPoint(p);
+    }
+  }
+
+  void* observer_ = nullptr;
+  void (*call_)(void*) = nullptr;
+};
+
 class BulletSolver final : public CollisionSolver {
  public:
   BulletSolver(const SolverPlan& plan, std::span<const SolverState> first);
@@ -60,6 +158,8 @@ class BulletSolver final : public CollisionSolver {
 
   void step(std::span<SolverState> bodies, double step) noexcept override;
   const SolverCounters& counters() const noexcept override { return counters_; }
+  /// Called by the world between finding contacts and computing their impulses.
+  void note_approaches() noexcept;
 
  private:
   void add_bodies(const SolverPlan& plan, std::span<const SolverState> first);
@@ -67,6 +167,9 @@ class BulletSolver final : public CollisionSolver {
   void add_floor(const Floor& floor);
   void add_joint(const SolverJoint& joint, std::span<const SolverState> first);
   void add_constraint(std::unique_ptr<btTypedConstraint> constraint);
+  void rebound(std::span<const SolverState> bodies) noexcept;
+  void push_apart(double share) noexcept;
+  double kinetic_energy() const noexcept;
   void mark_met(std::span<SolverState> bodies) noexcept;
   btVector3 length(const Vector3d& v) const noexcept { return to_bullet(Vector3d(scale_ * v)); }
 
@@ -83,18 +186,24 @@ class BulletSolver final : public CollisionSolver {
   double scale_ = 1;  // Bullet's units per m
   std::size_t substeps_ = 1;
   double part_ = 1e-3;  // s, of a substep
+  double before_ = 0;   // energy of motion before a substep, in Bullet's units
   std::vector<BulletShapes> shapes_;
   btDefaultCollisionConfiguration configuration_;
-  btCollisionDispatcher dispatcher_{&configuration_};
+  BoxPairs box_pairs_;
+  btGjkEpaPenetrationDepthSolver penetration_;
+  btConvexConvexAlgorithm::CreateFunc sphere_pairs_{&penetration_};
+  ForesightedDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;
   btSequentialImpulseConstraintSolver impulses_;
-  btDiscreteDynamicsWorld world_{&dispatcher_, &broadphase_, &impulses_, &configuration_};
+  ObservedWorld world_{&dispatcher_, &broadphase_, &impulses_, &configuration_};
   std::vector<Own> own_;
   std::vector<std::unique_ptr<btRigidBody>> fixed_;
   std::vector<FloorBody> floors_;
   std::vector<std::unique_ptr<btTypedConstraint>> constraints_;
   std::unique_ptr<btRigidBody> anchor_;  // the world, for joints
   SolverCounters counters_;
+  std::vector<Rebound> rebounds_;
+  std::vector<std::pair<btVector3, btVector3>> plain_;  // velocities without rebounds
 };
 
 /// Returns the size of a typical body: the median radius of gyration, m.
@@ -115,12 +224,19 @@ BulletSolver::BulletSolver(const SolverPlan& plan, std::span<const SolverState> 
       part_(plan.step / static_cast<double>(substeps_)) {
   set_pair_rules();
   btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
-  // Round bodies get up to three points in one step. [Bullet: its own number for bodies on planes]
+  // Round bodies get up to three points in one step [Bullet: its own number for bodies on planes],
+  // spheres only one.
   configuration_.setConvexConvexMultipointIterations(3, 3);
   world_.setGravity({0, 0, 0});
+  world_.observe(this);
   world_.setForceUpdateAllAabbs(false);
-  // Two boxes, or hulls, that lie on each other get all corners of their common face at once.
-  world_.getDispatchInfo().m_enableSatConvex = true;
+  // Bullet's own algorithms for two boxes and two spheres find no contact ahead.
+  dispatcher_.registerCollisionCreateFunc(BOX_SHAPE_PROXYTYPE, BOX_SHAPE_PROXYTYPE, &box_pairs_);
+  for (int other = 0; other < CONCAVE_SHAPES_START_HERE; ++other) {
+    dispatcher_.registerCollisionCreateFunc(SPHERE_SHAPE_PROXYTYPE, other, &sphere_pairs_);
+    dispatcher_.registerCollisionCreateFunc(other, SPHERE_SHAPE_PROXYTYPE, &sphere_pairs_);
+  }
+  dispatcher_.look_ahead(part_);
   btContactSolverInfo& info = world_.getSolverInfo();
   info.m_numIterations = static_cast<int>(plan.quality.iterations);
   info.m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_USE_2_FRICTION_DIRECTIONS |
@@ -130,11 +246,13 @@ BulletSolver::BulletSolver(const SolverPlan& plan, std::span<const SolverState> 
   // Overlaps are removed by moving the bodies, which gives them no speed.
   info.m_splitImpulse = 1;
   info.m_splitImpulsePenetrationThreshold = 0;
+  info.m_erp = 0.8;   // [chosen: four fifths of a joint's error are removed in each step]
   info.m_erp2 = 0.1;  // [chosen: an overlap falls to 1/e in 10 ticks]
   info.m_linearSlop = 1e-4 * plan.step / 1e-3;
-  info.m_restitutionVelocityThreshold = scale_ * 0.02;  // [chosen: 0.02 m/s; slower impacts end]
   info.m_leastSquaresResidualThreshold = 0;
   add_bodies(plan, first);
+  plain_.resize(own_.size());
+  rebounds_.reserve(64 * (own_.size() + 1));
   for (const ColliderSet& set : plan.fixed_W) add_fixed(set);
   for (const SolverJoint& joint : plan.joints) add_joint(joint, first);
 }
@@ -164,8 +282,6 @@ void BulletSolver::add_bodies(const SolverPlan& plan, std::span<const SolverStat
     made->setActivationState(DISABLE_DEACTIVATION);
     if (!body.turns) made->setAngularFactor(0);
     if (whole != nullptr) {
-      // A rebound is computed from the speed at the touch. So what rebounds is not stopped ahead.
-      if (body.shape_B.restitution > 0) made->setContactProcessingThreshold(1e-6);
       const double inner = shapes.inner_radius();
       made->setCcdMotionThreshold(0.5 * inner);
       made->setCcdSweptSphereRadius(0.2 * inner);
@@ -212,10 +328,10 @@ void BulletSolver::add_fixed(const ColliderSet& set) {
   BulletShapes& shapes = shapes_.emplace_back(set, scale_, false);
   if (shapes.whole() == nullptr) return;
   btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, shapes.whole());
+  info.m_startWorldTransform = shapes.place();
   info.m_friction = set.friction;
   info.m_restitution = set.restitution;
   auto made = std::make_unique<btRigidBody>(info);
-  if (set.restitution > 0) made->setContactProcessingThreshold(1e-6);
   if (shapes.is_surface()) {
     made->setCollisionFlags(made->getCollisionFlags() |
                             btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
@@ -253,8 +369,7 @@ void BulletSolver::add_joint(const SolverJoint& joint, std::span<const SolverSta
   switch (choice.kind) {
     case JointKind::kHinge: {
       const Eigen::Matrix3d R = frame_along(choice.axis_W, Vector3d::UnitZ());
-      auto hinge = std::make_unique<btHingeConstraint>(b, a, local(joint.b, R), local(joint.a, R));
-      // Bullet's hinge counts the angle of its first body relative to the second.
+      auto hinge = std::make_unique<btHingeConstraint>(a, b, local(joint.a, R), local(joint.b, R));
       if (choice.limits) {
         hinge->setLimit((*choice.limits)[0], (*choice.limits)[1], 1, 0.3, 0);
       } else {
@@ -322,6 +437,10 @@ void BulletSolver::step(std::span<SolverState> bodies, double step) noexcept {
     bodies[i].met = own_[i].jointed;
   }
   const double part = step / static_cast<double>(substeps_);
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    bodies[i].way_W.setZero();
+    bodies[i].turn_W.setZero();
+  }
   for (std::size_t k = 0; k < substeps_; ++k) {
     for (std::size_t i = 0; i < own_.size(); ++i) {
       btRigidBody& body = *own_[i].body;
@@ -329,8 +448,16 @@ void BulletSolver::step(std::span<SolverState> bodies, double step) noexcept {
       body.applyCentralForce(length(bodies[i].f_W));
       body.applyTorque(to_bullet(Vector3d(scale_ * scale_ * bodies[i].tau_W)));
     }
+    before_ = kinetic_energy();
     world_.stepSimulation(part, 0);
     mark_met(bodies);
+    const double share = 1 / static_cast<double>(substeps_);
+    for (std::size_t i = 0; i < own_.size(); ++i) {
+      const btRigidBody& body = *own_[i].body;
+      bodies[i].way_W += share / scale_ * from_bullet(body.getLinearVelocity());
+      bodies[i].turn_W += share * from_bullet(body.getAngularVelocity());
+    }
+    rebound(bodies);
   }
   for (std::size_t i = 0; i < own_.size(); ++i) {
     const btRigidBody& body = *own_[i].body;
@@ -342,6 +469,108 @@ void BulletSolver::step(std::span<SolverState> bodies, double step) noexcept {
   }
 }
 
+double BulletSolver::kinetic_energy() const noexcept {
+  double sum = 0;
+  for (const Own& own : own_) {
+    const btRigidBody& body = *own.body;
+    const btVector3 spin = own.turns ? body.getAngularVelocity() : btVector3(0, 0, 0);
+    const btVector3 spin_B = spin * body.getWorldTransform().getBasis();
+    sum += body.getLinearVelocity().length2() / body.getInvMass() / 2;
+    if (own.turns) sum += (spin_B * spin_B / body.getInvInertiaDiagLocal()).dot({1, 1, 1}) / 2;
+  }
+  return sum;
+}
+
+// Bullet's own rebounds begin from where the bodies are at the end of a tick, which is inside of
+// each other. Here bodies that approach are first stopped where they touch, and then get their
+// speed apart.
+void BulletSolver::note_approaches() noexcept {
+  constexpr double kSlow = 0.02;  // m/s; slower impacts do not rebound [chosen]
+  rebounds_.clear();
+  for (int m = 0; m < dispatcher_.getNumManifolds(); ++m) {
+    btPersistentManifold& manifold = *dispatcher_.getManifoldByIndexInternal(m);
+    for (int p = 0; p < manifold.getNumContacts(); ++p) {
+      btManifoldPoint& point = manifold.getContactPoint(p);
+      const btScalar restitution = pair_restitution(manifold.getBody0(), manifold.getBody1());
+      point.m_combinedRestitution = 0;
+      if (!(restitution > 0)) continue;
+      // Bullet's solver writes only to the bodies of a manifold.
+      auto* const a = const_cast<btRigidBody*>(btRigidBody::upcast(manifold.getBody0()));
+      auto* const b = const_cast<btRigidBody*>(btRigidBody::upcast(manifold.getBody1()));
+      Rebound one;
+      one.a = a;
+      one.b = b;
+      one.point = &point;
+      one.normal = point.m_normalWorldOnB;
+      one.arm_a = point.getPositionWorldOnA() - a->getWorldTransform().getOrigin();
+      one.arm_b = point.getPositionWorldOnB() - b->getWorldTransform().getOrigin();
+      const btScalar apart = one.normal.dot(a->getVelocityInLocalPoint(one.arm_a) -
+                                            b->getVelocityInLocalPoint(one.arm_b));
+      if (!(apart < -scale_ * kSlow)) continue;
+      one.wanted = -restitution * apart;
+      if (rebounds_.size() < rebounds_.capacity()) rebounds_.push_back(one);
+    }
+  }
+}
+
+// Gives the share (0 to 1) of the rebounds to the velocities without them.
+void BulletSolver::push_apart(double share) noexcept {
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    own_[i].body->setLinearVelocity(plain_[i].first);
+    own_[i].body->setAngularVelocity(plain_[i].second);
+  }
+  for (const Rebound& one : rebounds_) {
+    const btVector3 impulse = share * one.impulse * one.normal;
+    one.a->applyImpulse(impulse, one.arm_a);
+    one.b->applyImpulse(-impulse, one.arm_b);
+  }
+}
+
+void BulletSolver::rebound(std::span<const SolverState> bodies) noexcept {
+  // A contact without an impulse has not been reached.
+  std::erase_if(rebounds_,
+                [](const Rebound& one) { return !(one.point->getAppliedImpulse() > 0); });
+  if (rebounds_.empty()) return;
+  double most = before_;  // the energy without a loss
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    const btRigidBody& body = *own_[i].body;
+    plain_[i] = {body.getLinearVelocity(), body.getAngularVelocity()};
+    most += part_ * (length(bodies[i].f_W).dot(body.getLinearVelocity()) +
+                     scale_ * scale_ * to_bullet(bodies[i].tau_W).dot(body.getAngularVelocity()));
+  }
+  const double least = kinetic_energy();
+  constexpr int kRounds = 20;  // [chosen: a row of ten bodies]
+  for (int round = 0; round < kRounds; ++round) {
+    for (Rebound& one : rebounds_) {
+      const btScalar apart = one.normal.dot(one.a->getVelocityInLocalPoint(one.arm_a) -
+                                            one.b->getVelocityInLocalPoint(one.arm_b));
+      const btScalar gain = one.a->computeImpulseDenominator(
+                                one.arm_a + one.a->getCenterOfMassPosition(), one.normal) +
+                            one.b->computeImpulseDenominator(
+                                one.arm_b + one.b->getCenterOfMassPosition(), one.normal);
+      const btScalar total = std::max<btScalar>(one.impulse + (one.wanted - apart) / gain, 0);
+      const btVector3 more = (total - one.impulse) * one.normal;
+      one.impulse = total;
+      one.a->applyImpulse(more, one.arm_a);
+      one.b->applyImpulse(-more, one.arm_b);
+    }
+  }
+  if (kinetic_energy() <= most) return;
+  // Several contacts with friction may gain energy together [Newton's restitution]. The energy is a
+  // quadratic function of the share; two of its values and the one in the middle determine it.
+  const double all = kinetic_energy();
+  push_apart(0.5);
+  const double middle = kinetic_energy();
+  const double square = 2 * (all + least) - 4 * middle;
+  const double slope = all - least - square;
+  double share = 0;
+  if (most > least) {
+    const double root = slope * slope + 4 * square * (most - least);
+    share = square > 0 && root >= 0 ? (std::sqrt(root) - slope) / (2 * square) : 0;
+  }
+  push_apart(std::clamp(share, 0.0, 1.0));
+}
+
 void BulletSolver::mark_met(std::span<SolverState> bodies) noexcept {
   ++counters_.steps;
   std::uint64_t contacts = 0;
@@ -350,7 +579,9 @@ void BulletSolver::mark_met(std::span<SolverState> bodies) noexcept {
     bool acts = false;
     for (int p = 0; p < manifold.getNumContacts(); ++p) {
       const btManifoldPoint& point = manifold.getContactPoint(p);
-      if (!(point.getAppliedImpulse() > 0) && !(point.getDistance() < 0)) continue;
+      // Bullet may leave an impulse along the surface at a point without one across it.
+      const bool rubs = point.m_appliedImpulseLateral1 != 0 || point.m_appliedImpulseLateral2 != 0;
+      if (!(point.getAppliedImpulse() > 0) && !(point.getDistance() < 0) && !rubs) continue;
       acts = true;
       if (point.getAppliedImpulse() > 0) ++contacts;
     }

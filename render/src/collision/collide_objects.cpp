@@ -55,7 +55,8 @@ driver::Result<CollidingTouches> collide_objects(std::vector<CollidingObject> ob
     }
     // The solver has the floor.
     const std::optional<Floor> floor = std::exchange(choice.floor, std::nullopt);
-    auto motion = rigid_motion_of(*object.solid.mesh_W, choice);
+    const auto axes_W = axes_of(object.solid);
+    auto motion = rigid_motion_of(*object.solid.mesh_W, choice, axes_W ? &*axes_W : nullptr);
     if (!motion) return named(object, motion.error());
     const MassProperties& mass = motion->body().settings().mass;
     auto set = collider_of(object.solid, object.collision,

@@ -83,6 +83,13 @@ std::optional<Collider> own_shape(const Primitive& shape_W) {
 
 }  // namespace
 
+std::optional<Matrix3d> axes_of(const SolidToCollide& solid) {
+  if (solid.shape_W == nullptr) return {};
+  const auto own = own_shape(*solid.shape_W);
+  if (!own || own->form == ColliderForm::kHalfSpace) return {};
+  return own->R;
+}
+
 driver::Result<ColliderSet> collider_of(const SolidToCollide& solid, const CollisionChoice& choice,
                                         const std::optional<PlaceOfBody>& body) {
   const PlaceOfBody B = body.value_or(PlaceOfBody{});
@@ -91,6 +98,14 @@ driver::Result<ColliderSet> collider_of(const SolidToCollide& solid, const Colli
   if (kind == CollisionShape::kNone) return set;
   if (kind == CollisionShape::kOwn && solid.shape_W != nullptr) {
     if (auto own = own_shape(*solid.shape_W)) {
+      // The centre of mass of a cone is not that of its shape; as a hull it needs no frame of its
+      // own.
+      if (body && own->form == ColliderForm::kCone) {
+        Collider hull;
+        hull.points = points_in(*solid.mesh_W, B);
+        set.shapes.push_back(std::move(hull));
+        return set;
+      }
       own->p = B.R_WB.transpose() * (own->p - B.p_WB);
       own->R = B.R_WB.transpose() * own->R;
       set.shapes.push_back(std::move(*own));

@@ -24,6 +24,9 @@ struct PlaceOfBody {
   Eigen::Vector3d p_WB{0, 0, 0};
 };
 
+/// Returns the axes (W) of a shape that is symmetric about them; empty for a mesh or a plane.
+std::optional<Eigen::Matrix3d> axes_of(const SolidToCollide& solid);
+
 /// Returns the shapes with which an object collides, in the frame B; `body` empty: it does not
 /// move, and B is W. The error states which shape cannot be made. Real-time: never from the servo
 /// thread.

@@ -50,6 +50,10 @@ struct SolverState {
   Eigen::Vector3d omega_W{0, 0, 0};
   Eigen::Vector3d f_W{0, 0, 0};    ///< Sum of all forces but those of contacts and joints, N.
   Eigen::Vector3d tau_W{0, 0, 0};  ///< Their torque about C, N m.
+  /// Set by the step: velocities with which the body moved during it. Those after it differ where
+  /// it rebounded.
+  Eigen::Vector3d way_W{0, 0, 0};
+  Eigen::Vector3d turn_W{0, 0, 0};
   bool met = false;  ///< Set by the step: whether the body touched something or has a joint.
 };
 

@@ -126,6 +126,7 @@ void CollisionWorld::step(double step) noexcept {
     for (std::size_t i = 0; i < members_.size(); ++i) {
       Push& push = push_of(hand, i);
       push.power = push.f_W.dot(members_[i].motion.velocity_at(push.p_W));
+      push.arm_W = push.p_W - states_[i].p_WC;
     }
   }
   // The free flight of each body is computed beside the solver's step.
@@ -172,9 +173,11 @@ void CollisionWorld::step(double step) noexcept {
   for (std::size_t hand = 0; hand < hands_; ++hand) {
     for (std::size_t i = 0; i < members_.size(); ++i) {
       Push& push = push_of(hand, i);
+      const SolverState& state = states_[i];
       const double after = push.f_W.dot(members_[i].motion.velocity_at(push.p_W));
-      // The way of a body that has met something is that of its last velocity.
-      given_[hand] += step * (states_[i].met ? after : (push.power + after) / 2);
+      const double power = state.met ? push.f_W.dot(state.way_W + state.turn_W.cross(push.arm_W))
+                                     : (push.power + after) / 2;
+      given_[hand] += step * power;
       push = {};
     }
   }

@@ -56,6 +56,8 @@ class CollisionWorld final : public SharedBody {
             const Eigen::Vector3d& p_W) noexcept;
   /// Returns the stored energy of a hand (J), as SharedBodyOf::energy_for, of all bodies together.
   double energy_for(std::size_t hand) const noexcept;
+  /// Returns the energy of motion, height and springs of all bodies, J.
+  double energy() const noexcept;
   /// Notes that the force law of one body has ended its tick. If there is one hand, the last one
   /// steps the world.
   void end_of_body(double step) noexcept;
@@ -67,6 +69,7 @@ class CollisionWorld final : public SharedBody {
 
   std::size_t hands() const noexcept { return hands_; }
   std::size_t size() const noexcept { return members_.size(); }
+  const SolverState& state(std::size_t body) const noexcept { return states_[body]; }
   const CollisionSolver& solver() const noexcept { return *solver_; }
 
  private:
@@ -74,11 +77,11 @@ class CollisionWorld final : public SharedBody {
   struct Push {
     Eigen::Vector3d f_W{0, 0, 0};
     Eigen::Vector3d p_W{0, 0, 0};
-    double power = 0;  // W, before the step
+    Eigen::Vector3d arm_W{0, 0, 0};  // from the centre of mass
+    double power = 0;                // W, before the step
   };
 
   CollisionWorld() = default;
-  double energy() const noexcept;
   void pull_springs(double step) noexcept;
   void push_at(std::size_t body, const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_W) noexcept;
   Push& push_of(std::size_t hand, std::size_t body) noexcept {

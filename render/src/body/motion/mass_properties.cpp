@@ -1,7 +1,10 @@
 #include "body/motion/mass_properties.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace thimble::render {
 
@@ -65,6 +68,29 @@ driver::Result<MassProperties> mass_properties(const TriangleMesh& mesh, double 
   found.volume = volume;
   if (!found.valid()) return nothing_inside;
   return found;
+}
+
+void prefer_axes(const Eigen::Matrix3d& axes_W, MassProperties& properties) {
+  const Eigen::Matrix3d R_WB = properties.q_WB.toRotationMatrix();
+  const Eigen::Matrix3d turn = axes_W.transpose() * R_WB;
+  const Eigen::Matrix3d inertia = turn * properties.inertia.asDiagonal() * turn.transpose();
+  const Eigen::Vector3d own = inertia.diagonal();
+  const Eigen::Matrix3d rest = inertia - Eigen::Matrix3d(own.asDiagonal());
+  if (!(rest.cwiseAbs().maxCoeff() <= 1e-9 * own.sum())) return;
+  std::array<Eigen::Index, 3> order{0, 1, 2};
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return own[a] < own[b]; });
+  Eigen::Matrix3d axes;
+  for (std::size_t k = 0; k < 3; ++k) {
+    axes.col(static_cast<Eigen::Index>(k)) = axes_W.col(order[k]);
+    properties.inertia[static_cast<Eigen::Index>(k)] = own[order[k]];
+  }
+  // The last axis of the shape, which may have a direction, keeps it.
+  if (axes.determinant() < 0) {
+    const auto first = static_cast<Eigen::Index>(order[0] == 2 ? 1 : 0);
+    axes.col(first) = -axes.col(first);
+  }
+  properties.q_WB = Eigen::Quaterniond(axes).normalized();
 }
 
 }  // namespace thimble::render

@@ -28,4 +28,9 @@ struct MassProperties {
 /// from the servo thread.
 driver::Result<MassProperties> mass_properties(const TriangleMesh& mesh, double mass);
 
+/// Turns B to axes of a symmetric shape (a rotation to W), in the order of their inertia, if these
+/// are principal axes up to 1e-9. Only where several axes are equally good does B change by more
+/// than signs and order. Real-time: never from the servo thread.
+void prefer_axes(const Eigen::Matrix3d& axes_W, MassProperties& properties);
+
 }  // namespace thimble::render

@@ -83,14 +83,15 @@ driver::Result<AnyMotion> motion_of(const TriangleMesh& mesh_W, const MotionChoi
 
 }  // namespace
 
-driver::Result<RigidMotion> rigid_motion_of(const TriangleMesh& mesh_W,
-                                            const MotionChoice& choice) {
+driver::Result<RigidMotion> rigid_motion_of(const TriangleMesh& mesh_W, const MotionChoice& choice,
+                                            const Eigen::Matrix3d* axes_W) {
   if (!(choice.reach >= 0)) return driver::Error{"The reach of a body must be 0 m or more."};
   if (!choice.v_W.allFinite() || !choice.omega_W.allFinite()) {
     return driver::Error{"The initial velocities of a body must be finite."};
   }
-  const auto mass = mass_properties(mesh_W, choice.mass);
+  auto mass = mass_properties(mesh_W, choice.mass);
   if (!mass) return mass.error();
+  if (axes_W != nullptr) prefer_axes(*axes_W, *mass);
   RigidBodySettings settings{.mass = *mass,
                              .gravity_W = choice.gravity_W,
                              .damping = choice.damping,

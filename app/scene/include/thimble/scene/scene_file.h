@@ -10,6 +10,7 @@
 #include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/dent_settings.h"
+#include "thimble/render/body/joint_choice.h"
 #include "thimble/render/body/motion_choice.h"
 #include "thimble/render/body/shape_choice.h"
 #include "thimble/render/build_object_touch.h"
@@ -77,10 +78,18 @@ struct THIMBLE_EXPORT SceneObject {
   SceneBody body;  ///< Material.
   /// Bounds of the surface response, used if the object moves.
   render::BodyCoupling coupling;
+  render::CollisionChoice collision;  ///< How it meets bodies.
 
   /// Returns whether texture coordinates or vertex colours of the mesh file are used. Real-time:
   /// never from the servo thread.
   bool needs_maps() const;
+};
+
+/// Joint between two objects of a scene, or an object and the world.
+struct SceneJoint {
+  render::JointChoice choice;  ///< Kind, place and limits.
+  int a = -1;                  ///< Index of the object.
+  int b = -1;                  ///< Index of the other object; -1: the world.
 };
 
 /// Place of one of several arms in a scene: a rotation about the vertical, then a translation.
@@ -130,6 +139,8 @@ struct Scene {
   /// Line of the energy stage in the scene file; 0: not set.
   int energy_line = 0;
   std::vector<SceneObject> objects;         ///< Objects that can be touched.
+  std::vector<SceneJoint> joints;           ///< Joints between them.
+  render::CollisionQuality collisions;      ///< Accuracy of collisions and joints.
   FaultRule faults = FaultRule::kTogether;  ///< Effect of a fault with several arms.
   /// Radius of a tip that is a ball, m; 0: a point.
   double tip_radius = 0;

@@ -59,7 +59,8 @@ class THIMBLE_EXPORT SceneObjects {
   /// force law moves the bodies. Call once per tick, after the force laws of all arms. Real-time:
   /// safe.
   void step_bodies(double step) noexcept;
-  /// Returns the bodies that several arms touch, in the order of `moving`; empty with one arm.
+  /// Returns the bodies that several arms touch: one for each object that moves, in the order of
+  /// `moving`, or one for all that may meet; empty with one arm.
   std::span<const std::shared_ptr<render::SharedBody>> shared_bodies() const { return bodies_; }
 
   // A shape has no mesh until one of the following functions is called: it is touched without.
@@ -105,7 +106,9 @@ class THIMBLE_EXPORT SceneObjects {
   std::optional<render::PagingCounters> paging() const;
 
  private:
+  using Touches = std::vector<std::vector<std::unique_ptr<render::ObjectTouch>>>;
   SceneObjects();
+  driver::Result<void> let_meet(const Scene& scene, Touches& touches);
 
   std::vector<std::shared_ptr<render::PagedSurface>> pages_;  // Of the objects paged from disk.
   std::vector<std::unique_ptr<render::SceneTouch>> touches_;  // One per arm.
