@@ -196,6 +196,81 @@ TEST(PagedSurface, LoadsPagesWithinReachAndAhead) {
   EXPECT_EQ(surface->counters().failures, 0u);
 }
 
+TEST(PagedSurface, PagesWithinReachArePresentAfterSmallMoves) {
+  // Steps within the distance for which pages were loaded in advance, of a tip and a place that
+  // moves differently.
+  const PagingSettings settings{.frames = 20, .reach = 0.004, .horizon = 0.02};
+  const auto surface = open(settings);
+  support::Random random(303);
+  Vector3d p_tip(0, 0, 0.05), p_place(0.004, 0, 0.05), v_W(0, 0, 0);
+  std::uint64_t idle = 0;
+  for (int step = 0; step < 1000; ++step) {
+    p_tip = 0.05 * (p_tip + 0.0008 * random.direction()).normalized();
+    p_place = 0.05 * (p_place + 0.0008 * random.direction()).normalized();
+    if ((p_place - p_tip).norm() > 0.012) p_place = p_tip;
+    v_W = 0.95 * v_W + 0.02 * random.direction();
+    surface->begin_tick(p_tip, p_place, v_W);
+    surface->end_tick();
+    const std::uint64_t before = surface->counters().loads;
+    serve_all(*surface);
+    if (surface->counters().loads == before) ++idle;
+    for (std::int32_t t = 0; t < bumpy().triangle_count(); t += 3) {
+      const Vector3d p = bumpy().position(t, 0);
+      for (const Vector3d& path :
+           {Vector3d(0.5 * (p_tip + p_place)), p_tip, p_place,
+            Vector3d(p_tip + settings.horizon * v_W), Vector3d(p_place + settings.horizon * v_W)}) {
+        if ((p - path).norm() > settings.reach) continue;
+        ASSERT_TRUE(surface->find(t)) << "triangle " << t << " in step " << step;
+      }
+    }
+  }
+  EXPECT_GT(idle, 500u);
+  EXPECT_EQ(surface->counters().short_of_frames, 0u);
+}
+
+TEST(PagedSurface, LoadsAheadOfItsReachWhereItHasRoom) {
+  const auto loads = [](std::size_t frames) {
+    const auto surface = open({.frames = frames, .reach = 0.02, .horizon = 0});
+    tick(*surface, {0, 0, 0.05});
+    serve_all(*surface);
+    EXPECT_EQ(surface->counters().short_of_frames, 0u) << frames;
+    return surface->counters().loads;
+  };
+  const std::uint64_t roomy = loads(20);
+  std::uint64_t tight = 0;  // loaded by the smallest number of frames that suffices
+  for (std::size_t frames = roomy - 1; frames > 0; --frames) {
+    const auto surface = open({.frames = frames, .reach = 0.02, .horizon = 0});
+    tick(*surface, {0, 0, 0.05});
+    serve_all(*surface);
+    if (surface->counters().short_of_frames > 0) break;
+    tight = surface->counters().loads;
+    EXPECT_LE(tight, frames);
+  }
+  EXPECT_GT(tight, 0u);
+  EXPECT_LT(tight, roomy);
+}
+
+TEST(PagedSurface, EvictsThePageThatWasWantedLeastRecently) {
+  // Two places in turn, and a third one: the pages of the first, wanted again, stay.
+  const auto surface = open({.frames = 12, .reach = 0.002, .horizon = 0});
+  const auto visit = [&](const Vector3d& p_W) {
+    tick(*surface, p_W);
+    serve_all(*surface);
+  };
+  const TreeSearch<PackedSurface> tree(bumpy());
+  const auto at = [&tree](const Vector3d& p_W) { return tree.closest(p_W, 1).triangle; };
+  const Vector3d a(0, 0, 0.05), b(0, 0.05, 0), c(0.05, 0, 0), d(-0.05, 0, 0);
+  visit(a);
+  visit(b);
+  for (int step = 0; step < 100; ++step) {
+    visit(a);
+    visit(step % 2 == 0 ? c : d);
+    ASSERT_TRUE(surface->find(at(a))) << step;
+  }
+  EXPECT_FALSE(surface->find(at(b)));
+  EXPECT_GT(surface->counters().evictions, 0u);
+}
+
 TEST(PagedSurface, KeepsTheNearestPagesWhenItHasTooFewFrames) {
   const auto surface = open({.frames = 2, .reach = 0.2, .horizon = 0});
   tick(*surface, {0, 0, 0.05});
