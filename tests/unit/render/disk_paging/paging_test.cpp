@@ -197,34 +197,38 @@ TEST(PagedSurface, LoadsPagesWithinReachAndAhead) {
 }
 
 TEST(PagedSurface, PagesWithinReachArePresentAfterSmallMoves) {
-  // Steps within the distance for which pages were loaded in advance, of a tip and a place that
-  // moves differently.
-  const PagingSettings settings{.frames = 20, .reach = 0.004, .horizon = 0.02};
+  // Steps shorter than the distance for which pages were loaded in advance; the tip, the place and
+  // the velocity move in turn while the others rest.
+  const PagingSettings settings{.frames = 12, .reach = 0.004, .horizon = 0.02};
   const auto surface = open(settings);
   support::Random random(303);
-  Vector3d p_tip(0, 0, 0.05), p_place(0.004, 0, 0.05), v_W(0, 0, 0);
+  constexpr int kSteps = 100;
   std::uint64_t idle = 0;
-  for (int step = 0; step < 1000; ++step) {
-    p_tip = 0.05 * (p_tip + 0.0008 * random.direction()).normalized();
-    p_place = 0.05 * (p_place + 0.0008 * random.direction()).normalized();
-    if ((p_place - p_tip).norm() > 0.012) p_place = p_tip;
-    v_W = 0.95 * v_W + 0.02 * random.direction();
-    surface->begin_tick(p_tip, p_place, v_W);
-    surface->end_tick();
-    const std::uint64_t before = surface->counters().loads;
-    serve_all(*surface);
-    if (surface->counters().loads == before) ++idle;
-    for (std::int32_t t = 0; t < bumpy().triangle_count(); t += 3) {
-      const Vector3d p = bumpy().position(t, 0);
-      for (const Vector3d& path :
-           {Vector3d(0.5 * (p_tip + p_place)), p_tip, p_place,
-            Vector3d(p_tip + settings.horizon * v_W), Vector3d(p_place + settings.horizon * v_W)}) {
-        if ((p - path).norm() > settings.reach) continue;
-        ASSERT_TRUE(surface->find(t)) << "triangle " << t << " in step " << step;
+  for (int block = 0; block < 30; ++block) {
+    const Vector3d begin = 0.05 * random.direction(), heading = random.direction();
+    for (int step = 0; step < kSteps; ++step) {
+      const Vector3d moved = 0.05 * (begin + 0.0004 * step * heading).normalized();
+      const Vector3d p_tip = block % 3 == 0 ? moved : begin;
+      const Vector3d p_place = block % 3 == 1 ? moved : begin;
+      const Vector3d way = block % 3 == 2 ? Vector3d(moved - begin) : Vector3d(0, 0, 0);
+      const Vector3d v_W = way / settings.horizon;
+      surface->begin_tick(p_tip, p_place, v_W);
+      surface->end_tick();
+      const std::uint64_t before = surface->counters().loads;
+      serve_all(*surface);
+      if (surface->counters().loads == before) ++idle;
+      for (std::int32_t t = 0; t < bumpy().triangle_count(); t += 3) {
+        const Vector3d p = bumpy().position(t, 0);
+        for (const Vector3d& path :
+             {Vector3d(0.5 * (p_tip + p_place)), p_tip, p_place, Vector3d(p_tip + way)}) {
+          if ((p - path).norm() > settings.reach) continue;
+          ASSERT_TRUE(surface->find(t))
+              << "triangle " << t << " in step " << step << " of " << block;
+        }
       }
     }
   }
-  EXPECT_GT(idle, 500u);
+  EXPECT_GT(idle, 1000u);
   EXPECT_EQ(surface->counters().short_of_frames, 0u);
 }
 
@@ -252,7 +256,7 @@ TEST(PagedSurface, LoadsAheadOfItsReachWhereItHasRoom) {
 
 TEST(PagedSurface, EvictsThePageThatWasWantedLeastRecently) {
   // Two places in turn, and a third one: the pages of the first, wanted again, stay.
-  const auto surface = open({.frames = 12, .reach = 0.002, .horizon = 0});
+  const auto surface = open({.frames = 6, .reach = 0.002, .horizon = 0});
   const auto visit = [&](const Vector3d& p_W) {
     tick(*surface, p_W);
     serve_all(*surface);
@@ -346,7 +350,7 @@ TEST(PagedSurface, MatchesInsideAndNearestOfATreeInMemory) {
 
 TEST(PagedSurface, ReportsUnknownInsteadOfAWrongAnswer) {
   // A few of many pages: every answer that claims to be complete must be correct.
-  const auto surface = open({.frames = 5, .reach = 0.006, .horizon = 0});
+  const auto surface = open({.frames = 5, .reach = 0.0048, .horizon = 0});
   const TreeSearch<PackedSurface> tree(bumpy());
   support::Random random(10);
   int known = 0, unknown = 0;
