@@ -413,9 +413,10 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
     for (const SceneArm& one : scene.arms) check_stall(root, scene.rate, one.arm);
   }
   const render::EffectContext context = effect_context_of(scene.arms.front().arm, scene.rate);
-  for (YamlMap& object : root.require_maps("objects")) {
-    scene.objects.push_back(read_object(object, folder, mesh_folder, context));
-  }
+  scene.objects.reserve(root.list_size("objects"));
+  root.visit_maps("objects", [&](YamlMap& object) {
+    scene.objects.push_back(read_object(std::move(object), folder, mesh_folder, context));
+  });
   if (root.has("tool")) read_tool(root.require_map("tool"), scene);
   std::unordered_set<std::string_view> names;
   for (const SceneObject& object : scene.objects) {

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <mutex>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
 #include "body/motion/move_object.h"
@@ -16,6 +16,7 @@
 #include "meshes/object_mesh.h"
 #include "meshes/object_tracker.h"
 #include "still_surface.h"
+#include "text/counted.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/scene/shared_meshes.h"
@@ -142,8 +143,12 @@ struct SceneObjects::Meshes {
   std::shared_ptr<SharedMeshes> store;
   std::mutex mutex;                // for all below
   std::vector<MeshPointer> own_W;  // null: not made yet
-  // Objects whose meshes are not made yet, and their shapes.
-  std::unordered_map<std::size_t, SceneShape> shapes;
+  // Objects that are shapes, in ascending order.
+  struct ObjectShape {
+    std::size_t object;
+    SceneShape shape;
+  };
+  std::vector<ObjectShape> shapes;
   MeshPointer all_W;              // null: not made yet
   std::vector<MeshPlace> places;  // of each object in `all_W`, plus the end
 
@@ -158,9 +163,12 @@ driver::Result<void> SceneObjects::Meshes::load(const Scene& scene, std::vector<
   const double reach = reach_of(scene);
   const auto empty = std::make_shared<const render::TriangleMesh>();
   own_W.reserve(scene.objects.size());
+  shapes.reserve(static_cast<std::size_t>(
+      std::count_if(scene.objects.begin(), scene.objects.end(),
+                    [](const SceneObject& object) { return object.shape.has_value(); })));
   for (const SceneObject& object : scene.objects) {
     if (object.shape) {
-      shapes.emplace(own_W.size(), *object.shape);
+      shapes.push_back({own_W.size(), *object.shape});
       own_W.emplace_back();
       continue;
     }
@@ -189,7 +197,12 @@ const MeshPointer& SceneObjects::Meshes::of(std::size_t object) {
 }
 
 const MeshPointer& SceneObjects::Meshes::made(std::size_t object) {
-  if (!own_W[object]) own_W[object] = store->mesh_like(shapes.at(object).mesh_W());
+  if (!own_W[object]) {
+    const auto own = std::lower_bound(
+        shapes.begin(), shapes.end(), object,
+        [](const ObjectShape& shape, std::size_t number) { return shape.object < number; });
+    own_W[object] = store->mesh_like(own->shape.mesh_W());
+  }
   return own_W[object];
 }
 
@@ -324,6 +337,22 @@ std::optional<render::PagingCounters> SceneObjects::paging() const {
     sum.short_of_frames += one.short_of_frames;
   }
   return sum;
+}
+
+driver::Result<void> SceneObjects::check_pages(const Scene& scene) const {
+  std::string errors;
+  auto pages = pages_.begin();
+  for (const SceneObject& object : scene.objects) {
+    if (!object.paged) continue;
+    const std::uint64_t failures = (*pages++)->counters().failures;
+    if (failures == 0) continue;
+    errors += fmt::format(
+        "{}{}: {} could not be read, because the file is damaged or the disk failed. The tip did "
+        "not feel the surface there. Write the file again with `thimble mesh page`.",
+        errors.empty() ? "" : "\n", object.mesh_file.string(), counted(failures, "page"));
+  }
+  if (errors.empty()) return {};
+  return driver::Error{errors};
 }
 
 }  // namespace thimble::scene

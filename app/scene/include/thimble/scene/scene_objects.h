@@ -103,6 +103,9 @@ class THIMBLE_EXPORT SceneObjects {
   void serve_pages() noexcept;
   /// Returns the disk paging counters of all objects; empty if no object is paged.
   std::optional<render::PagingCounters> paging() const;
+  /// Fails if pages of a page file could not be read; the error names each such file and the fix.
+  /// `scene` is that of `build`. Real-time: never from the servo thread.
+  driver::Result<void> check_pages(const Scene& scene) const;
 
  private:
   SceneObjects();
