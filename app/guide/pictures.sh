@@ -42,6 +42,12 @@ figure friction friction/overview.png
 figure stability_map stability/kb_map.png
 figure stability_drive_train stability/drive_train.png
 
+# Several objects, and a tip with a radius.
+"$program" study world --out world >/dev/null
+for name in seam block groove; do
+  figure "world_$name" "world/$name.png"
+done
+
 # A recording, as a plot.
 "$program" run "$scenes/tin_can.yaml" --report can >/dev/null
 figure recording can/force_and_depth.png
