@@ -9,7 +9,7 @@ namespace thimble::view {
 /// (maps.js).
 constexpr Colour map_colour(const Colour& object, float share) {
   // Both ends differ from the object's own colour, which is in the middle. [chosen]
-  constexpr float kLight = 0.8F, kDark = 0.35F;
+  constexpr float kLight = 0.55F, kDark = 0.35F;
   Colour colour{};
   for (std::size_t i = 0; i < colour.size(); ++i) {
     const float light = object[i] + kLight * (1 - object[i]), dark = kDark * object[i];

@@ -3,7 +3,7 @@ function mapColour(i, share) {
   const own = parseInt(objectColour(i).slice(1), 16);
   return [16, 8, 0].map(shift => {
     const one = ((own >> shift) & 255) / 255;
-    const light = one + 0.8 * (1 - one), dark = 0.35 * one;
+    const light = one + 0.55 * (1 - one), dark = 0.35 * one;
     return share < 0.5 ? light + 2 * share * (one - light) : one + (2 * share - 1) * (dark - one);
   });
 }
