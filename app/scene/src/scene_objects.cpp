@@ -12,6 +12,7 @@
 #include "body/motion/shared_body.h"
 #include "build_paged_touch.h"
 #include "disk_paging/paged_surface.h"
+#include "map_picture.h"
 #include "meshes/mesh_join.h"
 #include "meshes/object_mesh.h"
 #include "meshes/object_tracker.h"
@@ -234,6 +235,21 @@ const MeshPointer& SceneObjects::shared_mesh_W(std::size_t object) const {
 const MeshPlace& SceneObjects::place(std::size_t object) const {
   meshes_->join();
   return meshes_->places[object];
+}
+
+std::optional<render::MapPicture> SceneObjects::map_picture(const Scene& scene,
+                                                            std::size_t object) const {
+  const SceneObject& one = scene.objects[object];
+  if (!one.needs_maps() || one.shape || one.paged) return {};
+  // Held by `meshes_`, so it is not loaded again.
+  const auto loaded = meshes_->store->object_mesh(one);
+  if (!loaded) return {};
+  render::SurfaceChoice surface = surface_of(one);
+  surface.maps = (*loaded)->maps;
+  const auto mapped = std::count_if(scene.objects.begin(), scene.objects.end(),
+                                    [](const SceneObject& other) { return other.needs_maps(); });
+  return render::map_picture(surface, (*loaded)->mesh_W,
+                             render::kMapPartsMax / static_cast<std::size_t>(mapped));
 }
 
 driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(

@@ -16,6 +16,7 @@
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::render {
+struct MapPicture;
 class PagedSurface;
 class SharedBody;
 }  // namespace thimble::render
@@ -76,6 +77,10 @@ class THIMBLE_EXPORT SceneObjects {
   const std::shared_ptr<const render::TriangleMesh>& shared_mesh_W(std::size_t object) const;
   /// Returns the offsets of an object in `mesh_W`.
   const MeshPlace& place(std::size_t object) const;
+
+  /// Returns the map of an object, sampled for drawing; empty if it has none. `scene` is that of
+  /// `build`.
+  std::optional<render::MapPicture> map_picture(const Scene& scene, std::size_t object) const;
 
   /// Returns the current mesh of one object, moved and deformed (W, m). If `object` is negative,
   /// returns all objects as one mesh. Not while the servo runs.
