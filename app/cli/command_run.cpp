@@ -308,7 +308,11 @@ ExitCode run_one(RunContext& context, session::Session& session,
     return report_error(written.error(), kExitTrouble);
   }
   const ExitCode ended = end_of(session, desk && desk->ended());
-  return ended == kExitDone ? recorded : ended;
+  if (ended != kExitDone) return ended;
+  if (const auto read = session.setup().objects().check_pages(session.scene()); !read) {
+    return report_error(read.error(), kExitBadInput);
+  }
+  return recorded;
 }
 
 /// Adds all files that a run reads and writes.

@@ -22,7 +22,7 @@ figure() {  # NAME FILE: a figure that the program wrote
 "$program" shot "$scenes/elephant.yaml" --plots --size 720x540 --out "$pictures/first_touch.png" >/dev/null
 
 # The example scene of scenes.md.
-awk '/^```yaml$/ { inside = 1; next } /^```/ { inside = 0 } inside && /^name: / { keep = $2 == "my_ball" } inside && keep' \
+awk '/^```yaml$/ { inside = 1; next } /^```/ { inside = keep = 0 } inside && /^name: / { keep = $2 == "my_ball" } inside && keep' \
   "$here/pages/scenes.md" >my_ball.yaml
 "$program" shot my_ball.yaml --out "$pictures/my_ball.png" --size 480x320 --no-caption >/dev/null
 
@@ -41,6 +41,12 @@ figure friction friction/overview.png
 "$program" study stability --arm vintage_phantom --coarse --out stability >/dev/null || [ $? = 5 ]
 figure stability_map stability/kb_map.png
 figure stability_drive_train stability/drive_train.png
+
+# Several objects, and a tip with a radius.
+"$program" study world --out world >/dev/null
+for name in seam block groove; do
+  figure "world_$name" "world/$name.png"
+done
 
 # A recording, as a plot.
 "$program" run "$scenes/tin_can.yaml" --report can >/dev/null

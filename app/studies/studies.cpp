@@ -6,6 +6,7 @@
 #include "studies/study.h"
 #include "studies/study_box.h"
 #include "studies/study_texture.h"
+#include "studies/world/study_world.h"
 
 namespace thimble::studies {
 namespace {
@@ -17,6 +18,8 @@ constexpr std::array kStudies{
     Study{"texture", "spectrum of a stroke over each texture, compared with the requested waves",
           study_texture},
     Study{"box", "force over a square for both kinds of box (Fig. 2 of the paper)", study_box},
+    Study{"world", "seam, corner and groove: one proxy for all objects, compared with one for each",
+          study_world},
     Study{"integrators", "cost per tick and error of each integrator of deformable bodies",
           study_integrators},
     Study{"accuracy", "error and cost of every approximation, on one page", nullptr},

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "share/arm_lines.h"
+#include "surface/map/triangle_grid.h"
 
 namespace thimble::view {
 namespace {
@@ -41,6 +42,17 @@ DrawnObject drawn_object(const session::SharedScene& scene,
     drawn.mesh.triangles.push_back({static_cast<std::int32_t>(a - object.first_vertex),
                                     static_cast<std::int32_t>(b - object.first_vertex),
                                     static_cast<std::int32_t>(c - object.first_vertex)});
+  }
+  if (const session::SharedScene::Map& map = object.map; map.parts > 0) {
+    const auto values =
+        std::span(scene.map_values)
+            .subspan(map.first_value, object.triangle_count * render::grid_points(map.parts));
+    drawn.map = {.quantity = map.quantity,
+                 .unit = map.unit,
+                 .min = map.min,
+                 .max = map.max,
+                 .parts = map.parts,
+                 .values = {values.begin(), values.end()}};
   }
   drawn.endless = drawn.is_placeholder && is_flat(drawn.mesh);
   return drawn;

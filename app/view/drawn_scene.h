@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
@@ -13,6 +14,15 @@
 
 namespace thimble::view {
 
+/// A map of a surface, as a colour of its triangles.
+struct DrawnMap {
+  std::string quantity;  ///< "stiffness"
+  std::string unit;
+  double min = 0, max = 0;    ///< Values at 0 and 1.
+  std::size_t parts = 0;      ///< Parts of each side of a triangle; 0: no map.
+  std::vector<float> values;  ///< 0 to 1, of the grid of each triangle (triangle_grid.h).
+};
+
 /// One object as drawn; a field has a mesh without triangles.
 struct DrawnObject {
   std::string name;
@@ -23,6 +33,7 @@ struct DrawnObject {
   std::string friction{};       ///< Name of its friction; empty: none.
   bool endless = false;         ///< A plane: drawn, but not framed by the camera.
   bool field = false;           ///< Acts everywhere and has no triangles.
+  DrawnMap map{};               ///< Of an object that does not deform.
 };
 
 /// The force of a scene's fields on a tip at rest.

@@ -46,7 +46,15 @@ bool is_level(const render::TriangleMesh& mesh) {
 
 ScenePainter::ScenePainter(DrawnScene scene, ScenePrograms programs)
     : scene_(std::move(scene)), programs_(std::move(programs)) {
-  for (const GlProgram* program : programs_.all()) {
+  if (auto mapped = MappedSurfaces::make(scene_)) {
+    mapped_ = std::move(mapped).value();
+  } else {
+    for (DrawnObject& object : scene_.objects) object.map = {};  // as without maps
+  }
+  std::vector<const GlProgram*> all;
+  for (const GlProgram* program : programs_.all()) all.push_back(program);
+  if (mapped_) all.push_back(&mapped_->program());
+  for (const GlProgram* program : all) {
     const GLuint block = glGetUniformBlockIndex(**program, "View");
     if (block != GL_INVALID_INDEX) glUniformBlockBinding(**program, block, kViewBinding);
     // Numbers of the textures that the canvas binds; the shadow map is texture 0.
@@ -199,6 +207,10 @@ void ScenePainter::paint_surfaces(const PaintChoice& choice, const Camera& camer
   for (std::size_t i = 0; i < models_.size(); ++i) {
     if (static_cast<std::ptrdiff_t>(i) == floor_object_) continue;
     const int marks = choice.surfaces ? marks_on(scene_.objects[i]) : 0;
+    if (mapped_ && mapped_->has(i)) {
+      if (!gouraud) paint_mapped(i, marks);
+      continue;
+    }
     if (gouraud != (choice.shading == Shading::kGouraud && marks == 0)) continue;
     const GlProgram& surface = marks > 0 ? programs_.surface_marked
                                : gouraud ? programs_.surface_gouraud
@@ -221,6 +233,16 @@ void ScenePainter::paint_surfaces(const PaintChoice& choice, const Camera& camer
     }
     glDisable(GL_CULL_FACE);
   }
+}
+
+void ScenePainter::paint_mapped(std::size_t object, int marks) {
+  const GlProgram& program = mapped_->program();
+  glUseProgram(*program);
+  set(program, "model", places_[object]);
+  set(program, "normal_matrix", Eigen::Matrix3f(places_[object].block<3, 3>(0, 0)));
+  set_paint(program, object_colour(object), 0.16F);
+  glUniform1i(program.at("marks"), marks);
+  mapped_->draw(object);
 }
 
 void ScenePainter::paint_solids(const std::vector<Solid>& solids) {

@@ -14,6 +14,7 @@
 #include "view/gl/shadow_map.h"
 #include "view/gl/solids.h"
 #include "view/gl/surface_model.h"
+#include "view/maps/mapped_surfaces.h"
 #include "view/overlays/pane_model.h"
 #include "view/touch_marks.h"
 
@@ -68,6 +69,7 @@ class ScenePainter {
   void paint_shadows(const std::vector<Solid>& solids);
   void paint_shadow(std::size_t object);
   void paint_surfaces(const PaintChoice& choice, const Camera& camera, bool gouraud);
+  void paint_mapped(std::size_t object, int marks);
   void paint_light(const PaintChoice& choice);
   void paint_pixels(const PaintChoice& choice, Canvas& canvas);
   void set_shadows(const GlProgram& program, const PaintChoice& choice) const;
@@ -86,6 +88,7 @@ class ScenePainter {
   std::vector<std::shared_ptr<const render::TriangleMesh>> shapes_;  // the shapes in models_
   std::unique_ptr<SurfaceModel> naive_;  // of the bent object, for DentNormals::kNaive
   std::size_t naive_object_ = 0;
+  std::unique_ptr<MappedSurfaces> mapped_;  // null: no object has a map
   SolidModels solids_;
   std::vector<Eigen::Matrix4f> places_;  // poses of the objects in this picture
   Eigen::AlignedBox2i ground_shadow_;    // box with all shadows on the ground, pixels

@@ -54,16 +54,16 @@ struct Path {
   Vector3d start;              // outside, above the first
 };
 
-// Winds around a ball in steps of equal length.
-Path path_over(const support::BumpyBall& ball, double step, std::size_t ticks) {
+// Winds around a ball in steps of equal length. `radius` is that of the tip, m; 0: a point.
+Path path_over(const support::BumpyBall& ball, double step, std::size_t ticks, double radius = 0) {
   Path path;
   support::Random random(7);
   Vector3d at = Vector3d(0.3, 0.5, 0.8).normalized();
   Vector3d axis = Vector3d(0.1, 0.9, -0.2);
-  path.start = ball.at(at) + 2e-3 * ball.normal(at);
+  path.start = ball.at(at) + (2e-3 + radius) * ball.normal(at);
   for (std::size_t i = 0; i < ticks; ++i) {
     const Vector3d p = ball.at(at);
-    path.tips.push_back(p - kPressed * ball.normal(at));
+    path.tips.push_back(p + (radius - kPressed) * ball.normal(at));
     axis = (axis + 0.003 * at.cross(axis) + 0.002 * random.direction()).normalized();
     at = (at + step / p.norm() * axis.cross(at).normalized()).normalized();
   }
@@ -167,6 +167,32 @@ class Bench {
   void run_build(const std::string& size, std::size_t triangles) {
     build_shape("ball " + size, support::bench_ball(support::BumpyBall(), triangles), triangles);
     build_shape("torus " + size, support::bench_ring(support::Ring(), triangles), triangles);
+  }
+
+  // Measures a tip of 0.5 mm radius, and a point followed by the same law, on a fast slide.
+  void run_tip(const std::string& size, std::size_t triangles) {
+    const support::BumpyBall ball;
+    const render::TriangleMesh mesh = support::bench_ball(ball, triangles);
+    for (const double radius : {0.0, 0.5e-3}) {
+      const auto touch = render::build_object_touch(
+          mesh, {.tracker = render::TrackerChoice::kGodObject, .tip_radius = radius}, {});
+      if (!touch) return (void)std::fprintf(stderr, "%s\n", touch.error().message.c_str());
+      driver::DeviceState state;
+      const auto follow = [&](const Vector3d& p) {
+        state.p_WT = p;
+        const driver::TouchInfo touched = (*touch)->update(state).touch;
+        return touched.in_contact ? touched.depth : NAN;
+      };
+      const Path path = path_over(ball, 0.3e-3, kTicks, radius);
+      Followed found;
+      for (int round = 0; round < kRounds; ++round) follow_hot(path, follow, found);
+      const std::string name = "ball " + size + (radius > 0 ? ": tip of 0.5 mm" : ": point");
+      add(name + ", fast slide hot", found.ns, "ns");
+      add(name + ", depth error", found.error_mm, "mm");
+      // The path is below the smooth surface: coarse triangles may be below the tip.
+      add(name + ", contact lost", static_cast<double>(found.lost), "ticks",
+          triangles > 1000 ? "== 0" : "");
+    }
   }
 
   const std::vector<session::Figure>& figures() const { return figures_; }
@@ -399,10 +425,10 @@ class Bench {
 int main(int argc, char** argv) {
   // --figures=FILE writes the figures, --min=N begins at N triangles, --max=N stops there (default
   // 1e6), --long continues to 10^7, --contact skips the cold queries, --cold runs only them,
-  // --build only builds.
+  // --build only builds, --tip only measures a tip with a radius.
   std::string figures_file;
   double least = 0, most = 1e6;
-  bool hot = true, cold = true, touch = true;
+  bool hot = true, cold = true, touch = true, tip = false;
   for (int i = 1; i < argc; ++i) {
     if (std::strncmp(argv[i], "--figures=", 10) == 0) {
       figures_file = argv[i] + 10;
@@ -416,12 +442,14 @@ int main(int argc, char** argv) {
       most = 1e7;
     } else if (std::strcmp(argv[i], "--cold") == 0) {
       hot = false;
+    } else if (std::strcmp(argv[i], "--tip") == 0) {
+      tip = true;
     } else if (std::strcmp(argv[i], "--build") == 0) {
       touch = false;
     } else {
       std::fprintf(stderr,
                    "Unknown option %s. Options: --figures=FILE --min=N --max=N --long --contact "
-                   "--cold --build\n",
+                   "--cold --build --tip\n",
                    argv[i]);
       return 2;
     }
@@ -431,8 +459,12 @@ int main(int argc, char** argv) {
   for (int power = 3; power <= 7 && static_cast<double>(triangles) <= most; ++power) {
     const std::string size = "10^" + std::to_string(power);
     if (static_cast<double>(triangles) >= least) {
-      if (power > 5) bench.run_build(size, triangles);
-      if (touch) bench.run(size, triangles);
+      if (tip) {
+        bench.run_tip(size, triangles);
+      } else {
+        if (power > 5) bench.run_build(size, triangles);
+        if (touch) bench.run(size, triangles);
+      }
     }
     triangles *= 10;
   }

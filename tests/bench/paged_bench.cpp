@@ -1,8 +1,4 @@
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -15,6 +11,8 @@
 #include <vector>
 
 #include "disk_paging/paged_contact.h"
+#include "paged_slide.h"
+#include "paged_ticks.h"
 #include "report/figure_output.h"
 #include "studies/resident_memory.h"
 #include "studies/ring_pages.h"
@@ -22,7 +20,8 @@
 #include "track/packed_contact_in_memory.h"
 
 // A tip that slides at 0.5 m/s over a ring of 10^7 (--long: 10^8) triangles on disk, in a 1 kHz
-// loop that sleeps, with a loader thread; compared with 10^6 triangles in memory, in turns.
+// loop that sleeps, with a loader thread; compared with 10^6 triangles in memory, in turns. Before
+// that, ticks of rings of 10^5 to 10^7 triangles with the loading between them (paged_ticks.h).
 
 namespace thimble::bench {
 namespace {
@@ -30,54 +29,8 @@ namespace {
 using Eigen::Vector3d;
 using Clock = std::chrono::steady_clock;
 
-constexpr studies::BumpyRing kRing;
-constexpr double kPressed = 0.5e-3;  // m below the surface
-constexpr double kTick = 1e-3;       // s
-constexpr double kSpeed = 0.5;       // m/s
 constexpr int kTurns = 5;
 constexpr int kTurnTicks = 2000;
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-// Winds around the ring in steps of equal length. The heading turns slowly, so that the tip visits
-// every place.
-class Way {
- public:
-  Vector3d next() {
-    constexpr double kStep = 1e-6;
-    const Vector3d along_u = (kRing.at(u_ + kStep, v_) - kRing.at(u_ - kStep, v_)) / (2 * kStep);
-    const Vector3d along_v = (kRing.at(u_, v_ + kStep) - kRing.at(u_, v_ - kStep)) / (2 * kStep);
-    const Vector3d heading =
-        std::cos(turn_) * along_u / along_u.norm() + std::sin(turn_) * along_v / along_v.norm();
-    const double step = kSpeed * kTick / heading.norm();
-    u_ += step * std::cos(turn_) / along_u.norm();
-    v_ += step * std::sin(turn_) / along_v.norm();
-    turn_ += 7e-4;
-    return at(-kPressed);
-  }
-  Vector3d at(double height) const { return kRing.at(u_, v_) + height * kRing.normal(u_, v_); }
-
- private:
-  double u_ = 0.3, v_ = 0.2, turn_ = 0.4;
-};
-
-struct Ticks {
-  std::vector<double> ns;
-  double error = 0;
-  std::size_t touching = 0;
-
-  double mean() const {
-    double sum = 0;
-    for (const double v : ns) sum += v;
-    return sum / static_cast<double>(ns.size());
-  }
-  double percentile(double share) {
-    std::sort(ns.begin(), ns.end());
-    return ns[static_cast<std::size_t>(share * static_cast<double>(ns.size() - 1))];
-  }
-};
 
 // One contender on its path.
 template <class Contact>
@@ -95,7 +48,7 @@ class Slide {
   void run(int ticks, Ticks& result) {
     auto next = Clock::now();
     for (int i = 0; i < ticks; ++i) {
-      const Vector3d p = way_.next();
+      const Vector3d p = way_.next(kSpeed);
       next += std::chrono::milliseconds(1);
       std::this_thread::sleep_until(next);
       const auto begin = Clock::now();
@@ -123,15 +76,6 @@ render::TriangleMesh ring_mesh(std::int64_t triangles) {
   const studies::RingGrid grid = studies::ring_grid(kRing, triangles);
   return studies::tube_mesh(grid.around, grid.across,
                             [](double u, double v) { return kRing.at(u, v); });
-}
-
-// Asks the kernel to drop its cache of a file; it may refuse.
-void forget(const std::filesystem::path& file) {
-  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  fdatasync(descriptor);
-  posix_fadvise(descriptor, 0, 0, POSIX_FADV_DONTNEED);
-  close(descriptor);
 }
 
 class Bench {
@@ -243,14 +187,17 @@ int main(int argc, char** argv) {
     }
   }
   thimble::bench::Bench bench;
+  std::vector<thimble::session::Figure> ticks;
+  if (!thimble::bench::time_paged_ticks(folder, most, ticks)) return 1;
   std::int64_t triangles = 10'000'000;
   for (int power = 7; power <= 8 && static_cast<double>(triangles) <= most; ++power) {
     if (!bench.run("10^" + std::to_string(power), triangles, folder)) return 1;
     triangles *= 10;
   }
-  std::printf("\n%s", thimble::report::figure_table(bench.figures()).c_str());
+  ticks.insert(ticks.end(), bench.figures().begin(), bench.figures().end());
+  std::printf("\n%s", thimble::report::figure_table(ticks).c_str());
   if (!figures_file.empty()) {
-    const auto written = thimble::report::write_figures(bench.figures(), figures_file);
+    const auto written = thimble::report::write_figures(ticks, figures_file);
     if (!written) {
       std::fprintf(stderr, "%s\n", written.error().message.c_str());
       return 1;

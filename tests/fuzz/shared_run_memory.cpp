@@ -73,7 +73,8 @@ void put_checksum_right(std::span<std::byte> memory) {
       session::shared_hash(head, table(head.objects, static_cast<session::SharedObject*>(nullptr)),
                            table(head.knobs, static_cast<session::SharedKnob*>(nullptr)),
                            table(head.vertices, static_cast<session::SharedVertex*>(nullptr)),
-                           table(head.triangles, static_cast<session::SharedTriangle*>(nullptr)));
+                           table(head.triangles, static_cast<session::SharedTriangle*>(nullptr)),
+                           table(head.map_values, static_cast<float*>(nullptr)));
 }
 
 void read_everything(session::SharedReader& reader) {

@@ -129,6 +129,23 @@ cp good.off open.off noise.off scenes/
 scene_with 's/^( *)mesh:.*/\1mesh: open.off/'
 expect_words 2 'open.off' "$thimble" run scenes/changed.yaml
 
+# A page file with damage in its pages: the run ends, and its exit code reports the damage.
+expect 0 '' "$thimble" mesh generate scenes/ring.pages --triangles 20000
+cat >scenes/ring.yaml <<END
+name: ring
+duration: 1
+arm: ../arms/vintage_phantom.yaml
+objects: [{name: ring, mesh: ring.pages, size: 0.09, stiffness: 700, damping: 1}]
+hand: {path: [{t: 0, at: [0.0317, 0, 0.035]}, {t: 1, at: [0.0317, 0, 0.009]}]}
+END
+expect 0 '' "$thimble" run scenes/ring.yaml
+# Each page of 64 KiB gets wrong bytes.
+bytes=$(stat -c %s scenes/ring.pages)
+for ((at = bytes - 8; at > 8192; at -= 65536)); do
+  printf 'damaged' | dd of=scenes/ring.pages bs=1 seek="$at" conv=notrunc status=none
+done
+expect_words 2 'ring.pages could not be read thimble mesh page' "$thimble" run scenes/ring.yaml
+
 # Output that is lost is an error; a reader that closes the pipe is not.
 expect 1 '^thimble: ' bash -c '"$0" run --list >/dev/full' "$thimble"
 expect 1 '^thimble: ' bash -c '"$0" --help >/dev/full' "$thimble"

@@ -45,11 +45,11 @@ if [ -n "$python" ]; then
 fi
 
 # The guide's scenes; the bowl is one that no repair closes.
-awk -v to="$work" '/^```yaml$/ { inside = 1; next } /^```/ { inside = 0 } inside && /^name: / { out = to "/" $2 ".yaml" }
-  inside { print >out }' "$source/app/guide/pages/scenes.md"
+awk -v to="$work" '/^```yaml$/ { inside = 1; next } /^```/ { inside = 0; out = "" } inside && /^name: / { out = to "/" $2 ".yaml" }
+  out != "" { print >out }' "$source/app/guide/pages/scenes.md"
 sed -i "s|\.\./arms|$source/app/arms|" my_*.yaml
 printf 'OFF\n5 4 0\n1 1 1\n-1 1 1\n-1 -1 1\n1 -1 1\n0 0 0.6\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n' >bowl.off
-for scene in my_ball my_bowl; do
+for scene in my_ball my_block my_bowl; do
   thimble run $scene.yaml >said 2>&1 || { echo "FAILED: the guide's scene $scene" >&2 && cat said >&2 && exit 1; }
 done
 grep -qE ' sheet .*4 triangles' said || { echo "FAILED: the sheet is not reported" >&2 && exit 1; }

@@ -33,6 +33,7 @@ expect_words 0 'float/index.html' \
   "$thimble" run "$scenes/floating_block.yaml" --report float --record float.h5
 expect_words 0 'float.html' "$thimble" replay float.h5 --page float.html
 expect_words 0 'clay/index.html' "$thimble" run "$scenes/clay.yaml" --report clay --record clay.h5
+expect_words 0 'tissue/index.html' "$thimble" run "$scenes/tissue.yaml" --report tissue --record tissue.h5
 expect_words 0 'two/index.html' "$thimble" run "$scenes/two_hands.yaml" --report two
 expect 0 '^MIT|Permission ' cat float/index.html
 expect 0 '^thimble: .*--page' bash -c '"$0" replay "$1" --page x.html --scene box; [ $? = 2 ]' "$thimble" "$scenes/box.yaml"
@@ -62,6 +63,9 @@ browse() {
 browse float/index.html float.h5 0.8005 3.6004 5.8006
 browse float.html float.h5 0.8005 3.6004 5.8006
 browse clay/index.html clay.h5 0.9003 1.8001 3.6008
+# A map of stiffness colours the surface, with its range.
+browse tissue/index.html tissue.h5 1.8002 2.6004 5.0003
+expect 0 'pad: stiffness.*250.*800 N/m' cat found.json
 # The appearance; after an intended change THIMBLE_WRITE_SHOTS=1 stores the new pictures.
 kept() {
   local stored=$source_dir/tests/data/shots/$1.png
@@ -70,6 +74,7 @@ kept() {
 }
 kept page_float float/index_small.png
 kept page_clay clay/index_small.png
+kept page_tissue tissue/index_small.png
 
 # serve RUN: serves the run's page; sets $address, its address, and $viewer, the serving process.
 serve() {

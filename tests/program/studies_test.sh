@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# thimble study texture and box, with --long also integrators and cost (100 s): tables, figures that meet
+# thimble study texture, box and world, with --long also integrators and cost (100 s): tables, figures that meet
 # their goals, pictures.
 source "$(dirname "$0")/expect.sh" "$@"
 
@@ -22,6 +22,16 @@ expect_json box/figures.json '[name=plate_2mm_pops_at_in_wedges].value' '<' 1.00
 expect 1 '' grep -q '"met": false' box/figures.json
 expect 0 '^# x mm, z mm' head -1 box/box.csv
 plots box/box
+
+# One proxy for all objects: a seam is not felt, a block stops the tip; a ball rests in a groove.
+expect 0 '^seam_together_force_error .*: met' "$thimble" study world --out world
+expect 1 '' grep -q '"met": false' world/figures.json
+expect_json world/figures.json '[name=seam_alone_force_error].value' '>' 3
+expect_json world/figures.json '[name=block_alone_sideways].value' '<' 1e-9
+for table in seam block groove; do
+  expect 0 '^# tip x mm' head -1 world/$table.csv
+done
+plots world/seam world/block world/groove
 
 [ -n "${THIMBLE_LONG:-}" ] || finish
 

@@ -97,6 +97,36 @@ TEST(PagedScene, BudgetLimitsThePagesInMemory) {
   }
 }
 
+TEST(PagedScene, DamagedPagesAreAnErrorAfterTheRun) {
+  const auto file = scene("", "");
+  const auto pages = file.parent_path() / "ring.pages";
+  for (const bool damaged : {false, true}) {
+    if (damaged) {
+      // One bit in each page.
+      std::fstream stream(pages, std::ios::binary | std::ios::in | std::ios::out);
+      const auto size = static_cast<std::streamoff>(std::filesystem::file_size(pages));
+      for (std::streamoff at = size - 1; at > 65536; at -= 65536) {
+        stream.seekg(at);
+        const int byte = stream.get();
+        stream.seekp(at);
+        stream.put(static_cast<char>(byte ^ 1));
+      }
+    }
+    const auto opened = session::Session::open(file, {});
+    ASSERT_TRUE(opened) << opened.error().message;
+    session::Session& session = **opened;
+    ASSERT_EQ(session.run(std::atomic<bool>{false}), driver::ServoEnd::kDone);
+    const auto read = session.setup().objects().check_pages(session.scene());
+    EXPECT_EQ(read.ok(), !damaged);
+    if (damaged) {
+      EXPECT_NE(read.error().message.find("ring.pages: "), std::string::npos);
+      EXPECT_NE(read.error().message.find("could not be read"), std::string::npos);
+      EXPECT_NE(read.error().message.find("thimble mesh page"), std::string::npos);
+    }
+  }
+  std::filesystem::remove(pages);
+}
+
 TEST(PagedScene, RefusesABudgetThatIsInvalidOrForAMeshInMemory) {
   EXPECT_NE(refusal("    budget: 0\n", "").find("budget: expected a whole number from 1 to "),
             std::string::npos);

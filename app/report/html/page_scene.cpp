@@ -12,6 +12,7 @@
 #include "report/html/light_mesh.h"
 #include "report/html/page_rows.h"
 #include "share/arm_lines.h"
+#include "surface/map/triangle_grid.h"
 
 namespace thimble::report {
 namespace {
@@ -95,6 +96,24 @@ void add_mesh(PageBlock& block, const std::string& prefix, const render::Triangl
   block.add(prefix + "corners", corners);
 }
 
+/// Returns the map of an object. Its values are on the page as bytes, which a screen can show.
+Json page_map(const SharedScene& scene, const SharedScene::Object& object,
+              const std::string& prefix, PageBlock& block) {
+  const SharedScene::Map& map = object.map;
+  const std::size_t count = object.triangle_count * render::grid_points(map.parts);
+  std::vector<std::uint8_t> values;
+  values.reserve(count);
+  for (const float value : std::span(scene.map_values).subspan(map.first_value, count)) {
+    values.push_back(static_cast<std::uint8_t>(std::lround(255 * value)));
+  }
+  block.add(prefix + "map", values);
+  return {{"quantity", map.quantity},
+          {"unit", map.unit},
+          {"min", map.min},
+          {"max", map.max},
+          {"parts", map.parts}};
+}
+
 }  // namespace
 
 void add_bars(const SharedScene::Arm& arm, std::span<const driver::TickRecord> ticks,
@@ -163,6 +182,10 @@ Json page_objects(const PageTouch& touch, PageBlock& block) {
                                       : kPageTrianglesMax * mesh.triangles.size() / all;
     const render::TriangleMesh drawn = light_mesh(mesh, max_drawn);
     add_mesh(block, prefix, drawn);
+    Json map;  // null: none, or its triangles are not those of the drawn mesh
+    if (object.map.parts > 0 && drawn.triangles.size() == mesh.triangles.size()) {
+      map = page_map(touch.scene, object, prefix, block);
+    }
     objects.push_back({{"name", object.name},
                        {"kind", name_of(object.kind)},
                        {"moves", object.moves},
@@ -172,6 +195,7 @@ Json page_objects(const PageTouch& touch, PageBlock& block) {
                        {"triangles", mesh.triangles.size()},
                        {"drawn", drawn.triangles.size()},
                        {"left", shaped}});
+    if (!map.is_null()) objects.back()["map"] = std::move(map);
   }
   for (const PageShape& shape : touch.left) {
     add_mesh(block, "object" + std::to_string(shape.object) + ".left.",

@@ -207,9 +207,9 @@ void explain_unused_keys(YamlMap& map) {
 void read_collision(YamlMap& map, const std::filesystem::path& folder, SceneObject& object) {
   if (!map.has("collision")) return;
   YamlSettings settings(map.require_map("collision"), folder);
-  object.collision.read(settings);
+  object.collision.emplace().read(settings);
   settings.finish();
-  if (object.paged && object.collision.shape != render::CollisionShape::kNone) {
+  if (object.paged && object.collision->shape != render::CollisionShape::kNone) {
     map.reject("collision", "of a page file can only be {shape: none}");
   }
 }
@@ -431,9 +431,11 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
   const Eigen::Vector3d gravity_W =
       root.optional_vector3("gravity", Eigen::Vector3d::Zero(), "m/s^2", -kGravityMax, kGravityMax);
   const render::EffectContext context = effect_context_of(scene.arms.front().arm, scene.rate);
-  for (YamlMap& object : root.require_maps("objects")) {
-    scene.objects.push_back(read_object(object, folder, mesh_folder, context, gravity_W));
-  }
+  scene.objects.reserve(root.list_size("objects"));
+  root.visit_maps("objects", [&](YamlMap& object) {
+    scene.objects.push_back(
+        read_object(std::move(object), folder, mesh_folder, context, gravity_W));
+  });
   read_joints(root, folder, scene);
   if (root.has("tool")) read_tool(root.require_map("tool"), scene);
   std::unordered_set<std::string_view> names;

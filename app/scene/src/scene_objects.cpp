@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <mutex>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <variant>
 
@@ -14,10 +14,12 @@
 #include "build_paged_touch.h"
 #include "collision/collide_objects.h"
 #include "disk_paging/paged_surface.h"
+#include "map_picture.h"
 #include "meshes/mesh_join.h"
 #include "meshes/object_mesh.h"
 #include "meshes/object_tracker.h"
 #include "still_surface.h"
+#include "text/counted.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/scene/shared_meshes.h"
@@ -70,14 +72,20 @@ Touched build_still(const SceneObject& object, const render::ContactChoice& cont
   return render::build_object_touch(**still, *mesh_W, contact, surface);
 }
 
+/// Returns how an object meets bodies.
+render::CollisionChoice collision_of(const SceneObject& object) {
+  return object.collision ? *object.collision : render::CollisionChoice{};
+}
+
 /// Returns whether bodies of a scene may meet something, or are held by joints.
 bool bodies_meet(const Scene& scene) {
   if (!scene.joints.empty()) return true;
   bool moves = false;
   int solids = 0;
   for (const SceneObject& object : scene.objects) {
-    const bool none = object.collision.shape == render::CollisionShape::kNone;
-    if (none || object.build_field || object.paged) continue;
+    if (collision_of(object).shape == render::CollisionShape::kNone || object.build_field ||
+        object.paged)
+      continue;
     ++solids;
     moves = moves || object.body.motion.has_value();
   }
@@ -86,7 +94,7 @@ bool bodies_meet(const Scene& scene) {
 
 /// Returns whether a shape at rest collides as a mesh.
 bool needs_own_mesh(const SceneObject& object) {
-  const auto kind = object.collision.shape;
+  const auto kind = collision_of(object).shape;
   if (object.shape && std::holds_alternative<render::Torus>(object.shape->shape_W)) return true;
   return kind != render::CollisionShape::kOwn && kind != render::CollisionShape::kNone;
 }
@@ -165,8 +173,12 @@ struct SceneObjects::Meshes {
   std::shared_ptr<SharedMeshes> store;
   std::mutex mutex;                // for all below
   std::vector<MeshPointer> own_W;  // null: not made yet
-  // Objects whose meshes are not made yet, and their shapes.
-  std::unordered_map<std::size_t, SceneShape> shapes;
+  // Objects that are shapes, in ascending order.
+  struct ObjectShape {
+    std::size_t object;
+    SceneShape shape;
+  };
+  std::vector<ObjectShape> shapes;
   MeshPointer all_W;              // null: not made yet
   std::vector<MeshPlace> places;  // of each object in `all_W`, plus the end
 
@@ -181,9 +193,12 @@ driver::Result<void> SceneObjects::Meshes::load(const Scene& scene, std::vector<
   const double reach = reach_of(scene);
   const auto empty = std::make_shared<const render::TriangleMesh>();
   own_W.reserve(scene.objects.size());
+  shapes.reserve(static_cast<std::size_t>(
+      std::count_if(scene.objects.begin(), scene.objects.end(),
+                    [](const SceneObject& object) { return object.shape.has_value(); })));
   for (const SceneObject& object : scene.objects) {
     if (object.shape) {
-      shapes.emplace(own_W.size(), *object.shape);
+      shapes.push_back({own_W.size(), *object.shape});
       own_W.emplace_back();
       continue;
     }
@@ -212,7 +227,12 @@ const MeshPointer& SceneObjects::Meshes::of(std::size_t object) {
 }
 
 const MeshPointer& SceneObjects::Meshes::made(std::size_t object) {
-  if (!own_W[object]) own_W[object] = store->mesh_like(shapes.at(object).mesh_W());
+  if (!own_W[object]) {
+    const auto own = std::lower_bound(
+        shapes.begin(), shapes.end(), object,
+        [](const ObjectShape& shape, std::size_t number) { return shape.object < number; });
+    own_W[object] = store->mesh_like(own->shape.mesh_W());
+  }
   return own_W[object];
 }
 
@@ -244,6 +264,21 @@ const MeshPointer& SceneObjects::shared_mesh_W(std::size_t object) const {
 const MeshPlace& SceneObjects::place(std::size_t object) const {
   meshes_->join();
   return meshes_->places[object];
+}
+
+std::optional<render::MapPicture> SceneObjects::map_picture(const Scene& scene,
+                                                            std::size_t object) const {
+  const SceneObject& one = scene.objects[object];
+  if (!one.needs_maps() || one.shape || one.paged) return {};
+  // Held by `meshes_`, so it is not loaded again.
+  const auto loaded = meshes_->store->object_mesh(one);
+  if (!loaded) return {};
+  render::SurfaceChoice surface = surface_of(one);
+  surface.maps = (*loaded)->maps;
+  const auto mapped = std::count_if(scene.objects.begin(), scene.objects.end(),
+                                    [](const SceneObject& other) { return other.needs_maps(); });
+  return render::map_picture(surface, (*loaded)->mesh_W,
+                             render::kMapPartsMax / static_cast<std::size_t>(mapped));
 }
 
 driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(
@@ -313,7 +348,7 @@ driver::Result<void> SceneObjects::let_meet(const Scene& scene, Touches& touches
     one.name = object.name;
     one.solid = {.mesh_W = has_mesh ? &mesh_W(i) : nullptr,
                  .shape_W = object.shape ? &object.shape->shape_W : nullptr};
-    one.collision = object.collision;
+    one.collision = collision_of(object);
     if (!object.body.motion) continue;
     one.motion = object.body.motion;
     one.coupling = object.coupling;
@@ -389,6 +424,22 @@ std::optional<render::PagingCounters> SceneObjects::paging() const {
     sum.short_of_frames += one.short_of_frames;
   }
   return sum;
+}
+
+driver::Result<void> SceneObjects::check_pages(const Scene& scene) const {
+  std::string errors;
+  auto pages = pages_.begin();
+  for (const SceneObject& object : scene.objects) {
+    if (!object.paged) continue;
+    const std::uint64_t failures = (*pages++)->counters().failures;
+    if (failures == 0) continue;
+    errors += fmt::format(
+        "{}{}: {} could not be read, because the file is damaged or the disk failed. The tip did "
+        "not feel the surface there. Write the file again with `thimble mesh page`.",
+        errors.empty() ? "" : "\n", object.mesh_file.string(), counted(failures, "page"));
+  }
+  if (errors.empty()) return {};
+  return driver::Error{errors};
 }
 
 }  // namespace thimble::scene

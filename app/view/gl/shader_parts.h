@@ -32,6 +32,7 @@ layout(std140) uniform View {
 inline std::string choice(Shading shading) {
   return shading == Shading::kGouraud  ? "#define GOURAUD\n"
          : shading == Shading::kMarked ? "#define MARKED\n"
+         : shading == Shading::kMapped ? "#define MARKED\n#define MAPPED\n"
                                        : "";
 }
 

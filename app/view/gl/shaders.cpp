@@ -11,6 +11,10 @@ layout(location = 1) in vec3 normal;
 uniform mat4 model;
 uniform mat3 normal_matrix;
 out vec3 n_W;
+#ifdef MAPPED
+layout(location = 2) in vec3 colour;
+out vec3 colour_v;
+#endif
 #ifdef GOURAUD
 uniform vec4 paint;  // as on the screen; gloss
 out vec3 p_W;
@@ -23,6 +27,9 @@ vec3 p_W;
 out vec3 p_B;
 #endif
 void main() {
+#ifdef MAPPED
+  colour_v = colour;
+#endif
 #ifdef MARKED
   p_B = position;
 #endif
@@ -108,10 +115,16 @@ void main() {
 }
 
 std::string surface_fragment(Shading shading, bool bent) {
-  const std::string marks = shading == Shading::kMarked ? kMarks + "in vec3 p_B;\n" : "";
+  const bool marked = shading == Shading::kMarked || shading == Shading::kMapped;
+  const std::string marks = marked ? kMarks + "in vec3 p_B;\n" : "";
   return "#version 330 core\n" + choice(shading) + (bent ? "#define BENT\n" : "") + marks + R"(
 in vec3 n_W;
 uniform vec4 paint;  // as on the screen; gloss
+#ifdef MAPPED
+in vec3 colour_v;    // as on the screen
+#else
+#define colour_v paint.rgb
+#endif
 layout(location = 0) out vec4 normal;
 layout(location = 1) out vec4 painted;
 void main() {
@@ -122,9 +135,9 @@ void main() {
 #endif
   normal = vec4(0.5 * n + 0.5, paint.w);
 #ifdef MARKED
-  painted = vec4(paint.rgb * sqrt(unmarked(p_B)), 1.0);
+  painted = vec4(colour_v * sqrt(unmarked(p_B)), 1.0);
 #else
-  painted = vec4(paint.rgb, 1.0);
+  painted = vec4(colour_v, 1.0);
 #endif
 }
 )";

@@ -9,6 +9,7 @@ enum class Shading {
   kPhong,    ///< Per pixel, from the interpolated normal.
   kGouraud,  ///< Per vertex, then interpolated.
   kMarked,   ///< As kPhong, with marks on textures and friction.
+  kMapped,   ///< As kMarked, with a colour per vertex.
 };
 
 }  // namespace thimble::view

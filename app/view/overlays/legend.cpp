@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "view/maps/map_colour.h"
 #include "view/number_text.h"
 #include "view/overlays/force_marks.h"
 
@@ -28,6 +29,13 @@ Legend legend_of(const DrawnScene& scene, const DrawnMoment& moment, const Paint
           {object_colour(i), scene.objects[i].name + ": no force at rest, so no arrows"});
     }
   }
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const DrawnMap& map = scene.objects[i].map;
+    if (map.parts == 0) continue;
+    legend.maps.push_back(
+        {i, scene.objects[i].name + ": " + map.quantity, fmt::format("{:.4g}", map.min),
+         fmt::format("{:.4g}{}{}", map.max, map.unit.empty() ? "" : " ", map.unit)});
+  }
   if (choice.marks.contact && moment.tick.in_contact) {
     legend.lines.push_back({kNormalColour, "contact normal"});
     legend.lines.push_back({kFrictionColour, "force along the surface"});
@@ -46,25 +54,46 @@ Legend legend_of(const DrawnScene& scene, const DrawnMoment& moment, const Paint
   return legend;
 }
 
+namespace {
+
+constexpr int kScaleSteps = 24;
+
+/// Draws a scale of colours with its ends; returns its height.
+template <class ColourAt>
+float write_scale(float left, float y, float width, Theme theme, const std::string& min,
+                  const std::string& max, ColourAt colour_at) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float size = ImGui::GetFontSize();
+  for (int k = 0; k < kScaleSteps; ++k) {
+    const auto at = static_cast<float>(k) / kScaleSteps;
+    const auto end = static_cast<float>(k + 1) / kScaleSteps;
+    list.AddRectFilled({left + at * width, y}, {left + end * width, y + 0.7F * size},
+                       screen_colour(colour_at(at + 0.5F / kScaleSteps)));
+  }
+  write_rimmed({left, y + 0.8F * size}, theme, colours_of(theme).text, min);
+  write_rimmed({left + width - ImGui::CalcTextSize(max.c_str()).x, y + 0.8F * size}, theme,
+               colours_of(theme).text, max);
+  return 2.3F * size;
+}
+
+}  // namespace
+
 void write_legend(const Legend& legend, Theme theme, const ScreenPart& part) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const float size = ImGui::GetFontSize();
   const float left = part.x + 0.7F * size;
   float y = part.y + 0.7F * size;
+  const float width = std::min(9 * size, 0.4F * part.width);
   if (legend.strongest > 0) {
-    const float width = std::min(9 * size, 0.4F * part.width);
-    constexpr int kSteps = 24;
-    for (int k = 0; k < kSteps; ++k) {
-      const auto at = static_cast<float>(k) / kSteps;
-      const auto end = static_cast<float>(k + 1) / kSteps;
-      list.AddRectFilled({left + at * width, y}, {left + end * width, y + 0.7F * size},
-                         screen_colour(force_colour(static_cast<double>(at) + 0.5 / kSteps)));
-    }
-    write_rimmed({left, y + 0.8F * size}, theme, colours_of(theme).text, "0");
-    const std::string end = plain_force(legend.strongest);
-    write_rimmed({left + width - ImGui::CalcTextSize(end.c_str()).x, y + 0.8F * size}, theme,
-                 colours_of(theme).text, end);
-    y += 2.3F * size;
+    y += write_scale(left, y, width, theme, "0", plain_force(legend.strongest),
+                     [](float share) { return force_colour(static_cast<double>(share)); });
+  }
+  for (const Legend::Scale& map : legend.maps) {
+    write_rimmed({left, y}, theme, colours_of(theme).text, map.text);
+    y += 1.35F * size;
+    const Colour& own = object_colour(map.object);
+    y += write_scale(left, y, width, theme, map.min, map.max,
+                     [&own](float share) { return map_colour(own, share); });
   }
   for (const Legend::Line& line : legend.lines) {
     list.AddRectFilled({left, y + 0.15F * size}, {left + 0.8F * size, y + 0.95F * size},

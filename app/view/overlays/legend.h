@@ -17,11 +17,18 @@ struct Legend {
     Colour colour{};
     std::string text;
   };
+  /// The colours of a map, and its range.
+  struct Scale {
+    std::size_t object = 0;
+    std::string text, min, max;
+  };
   std::vector<Line> lines;
+  std::vector<Scale> maps;
   double strongest = 0;  ///< N, at the end of the scale of forces; 0: no scale.
 };
 
-/// Returns the legend of the chosen marks. Real-time: never from the servo thread.
+/// Returns the legend of the chosen marks, and of the maps of all objects. Real-time: never from
+/// the servo thread.
 Legend legend_of(const DrawnScene& scene, const DrawnMoment& moment, const PaintChoice& choice);
 
 /// Draws a legend at the upper left of a part. Call between ImGui's NewFrame and Render.

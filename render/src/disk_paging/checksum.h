@@ -18,6 +18,14 @@ inline std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t se
   // Four independent sums, so that no multiplication waits for the last.
   std::array<std::uint64_t, 4> sums{seed + 1, seed + 2, seed + 3, seed + 4};
   std::size_t at = 0;
+  // Whole rounds with the sums in registers; then the rest.
+  std::array<std::uint64_t, 4> words;
+  for (; bytes.size() - at >= sizeof(words); at += sizeof(words)) {
+    std::memcpy(&words, bytes.data() + at, sizeof(words));
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      sums[lane] = std::rotl((sums[lane] ^ words[lane]) * kFactor, 29);
+    }
+  }
   for (std::size_t lane = 0; at < bytes.size(); lane = (lane + 1) % 4) {
     std::uint64_t word = 0;
     const std::size_t size = std::min<std::size_t>(sizeof(word), bytes.size() - at);

@@ -120,13 +120,25 @@ bool can_be(const PageBox& box) {
 PageBox box_of(std::span<const PackedTriangle> triangles) noexcept {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   PageBox box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  for (const PackedTriangle& packed : triangles) {
-    const std::array<const std::array<std::int32_t, 3>*, 3> axes{&packed.x, &packed.y, &packed.z};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto [low, high] = std::minmax({(*axes[axis])[0], (*axes[axis])[1], (*axes[axis])[2]});
-      box.min[axis] = std::min(box.min[axis], down(low));
-      box.max[axis] = std::max(box.max[axis], up(high));
+  if (triangles.empty()) return box;
+  // Bounds of each corner as integers. Rounding keeps their order, so it is done once at the end.
+  using Corners = std::array<std::int32_t, 3>;
+  std::array<Corners, 3> low{triangles[0].x, triangles[0].y, triangles[0].z};
+  std::array<Corners, 3> high = low;
+  const auto include = [](const Corners& x, Corners& least, Corners& greatest) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) {
+      least[k] = std::min(least[k], x[k]);
+      greatest[k] = std::max(greatest[k], x[k]);
     }
+  };
+  for (const PackedTriangle& packed : triangles) {
+    include(packed.x, low[0], high[0]);
+    include(packed.y, low[1], high[1]);
+    include(packed.z, low[2], high[2]);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.min[axis] = down(*std::min_element(low[axis].begin(), low[axis].end()));
+    box.max[axis] = up(*std::max_element(high[axis].begin(), high[axis].end()));
   }
   return box;
 }
@@ -326,12 +338,14 @@ std::int32_t PageFile::read_page(std::int32_t page,
     return 0;
   }
   // The servo follows neighbours without a check: none may be outside the file.
+  const auto end = static_cast<std::uint32_t>(triangle_count_);
+  bool valid = true;
   for (std::int32_t i = 0; i < count; ++i) {
     for (const std::int32_t neighbour : triangles[static_cast<std::size_t>(i)].neighbours) {
-      if (neighbour < 0 || neighbour >= triangle_count_) return 0;
+      valid &= static_cast<std::uint32_t>(neighbour) < end;  // a negative one is large
     }
   }
-  return count;
+  return valid ? count : 0;
 }
 
 void PageFile::announce_page(std::int32_t page) const noexcept {

@@ -12,6 +12,7 @@
 
 #include "compact_mesh/large_pages.h"
 #include "compact_mesh/packed_surface.h"
+#include "disk_paging/frame_order.h"
 #include "disk_paging/page_file.h"
 #include "disk_paging/page_tree.h"
 #include "search/contact_search.h"
@@ -123,7 +124,7 @@ class THIMBLE_EXPORT PagedSurface {
   bool inside_by_reading(const Eigen::Vector3d& p_W) const;
 
   PagingCounters counters() const noexcept;
-  /// Returns the bytes held in memory.
+  /// Returns the bytes held in memory once all frames are used.
   std::size_t bytes() const noexcept;
 
  private:
@@ -132,9 +133,12 @@ class THIMBLE_EXPORT PagedSurface {
   static constexpr std::int32_t kGroups = kPageTriangles / kGroup;
 
   struct Frame {
+    // Leaves the memory untouched: the system provides it when a page is loaded.
+    Frame() noexcept {}  // NOLINT(modernize-use-equals-default)
+
     std::array<PackedTriangle, kPageTriangles> triangles;
     std::array<PageBox, kGroups> boxes;  // box of each group, in steps
-    std::int32_t count = 0;
+    std::int32_t count;
   };
   const Frame* frame_of(std::int32_t page) const noexcept {
     const std::int32_t frame =
@@ -150,9 +154,16 @@ class THIMBLE_EXPORT PagedSurface {
     std::array<double, 3> v_W{};
   };
 
+  // Distance beyond `reach` up to which pages are loaded too, as a share of it: until the tip has
+  // moved this far, the pages in memory suffice and nothing is searched for. [measured: over 10^7
+  // triangles at 0.05 to 0.5 m/s, 0.25 takes 4 to 13 % less time than 0.5]
+  static constexpr double kSpare = 0.25;
+
   PagedSurface(PageFile file, const PagingSettings& settings);
-  void want(const Cursor& cursor);
-  void want_along(const Eigen::Vector3d& p, const Eigen::Vector3d& way);
+  bool suffices_for(const Cursor& cursor) const noexcept;
+  void want(const Cursor& cursor, double reach);
+  void want_along(const Eigen::Vector3d& p, const Eigen::Vector3d& way, double reach);
+  void mark_wanted(std::int32_t frame);
   std::int32_t free_frame();
   bool load(std::int32_t page, std::int32_t frame);
   void wait_for_ticks_end() const;
@@ -169,9 +180,11 @@ class THIMBLE_EXPORT PagedSurface {
   // Members used only by the loader.
   std::vector<std::int32_t> page_in_frame_;  // -1 if empty
   std::vector<std::uint64_t> wanted_at_;     // round in which a frame's page was last wanted
+  FrameOrder order_;                         // frames by that round
   std::vector<std::uint64_t> wanted_in_;     // round in which a page was last wanted
   std::vector<std::pair<double, std::int32_t>> wanted_;
-  std::vector<PackedTriangle> incoming_;
+  Cursor loaded_for_;        // position for which all pages within reach and `kSpare` were loaded
+  bool all_loaded_ = false;  // whether there is such a position
   std::uint64_t round_ = 0;
   std::atomic<std::uint64_t> loads_{0}, evictions_{0}, failures_{0}, short_of_frames_{0};
   std::atomic<std::uint64_t> misses_{0};

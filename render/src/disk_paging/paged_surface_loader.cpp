@@ -37,7 +37,28 @@ void PagedSurface::start_loader() {
   });
 }
 
-void PagedSurface::want(const Cursor& cursor) {
+// Returns whether the pages in memory suffice for a position: all paths near it are nearer than
+// `kSpare` to those of the last position for which all pages were loaded. False for NaN.
+bool PagedSurface::suffices_for(const Cursor& cursor) const noexcept {
+  if (!all_loaded_) return false;
+  const double spare = kSpare * settings_.reach;
+  using Numbers = std::array<double, 3>;
+  const auto near = [spare](const Vector3d& p, const Vector3d& q) noexcept {
+    return (p - q).squaredNorm() <= spare * spare;
+  };
+  const auto vector = [](const Numbers& x) noexcept { return Vector3d(x[0], x[1], x[2]); };
+  const auto both_near = [&](const Numbers& p, const Numbers& q) noexcept {
+    const Vector3d way = settings_.horizon * vector(cursor.v_W);
+    const Vector3d way_loaded = settings_.horizon * vector(loaded_for_.v_W);
+    return near(vector(p), vector(q)) && near(vector(p) + way, vector(q) + way_loaded);
+  };
+  // Paths are straight: if both ends are near those of another path, all of it is.
+  return both_near(cursor.p_tip, loaded_for_.p_tip) &&
+         both_near(cursor.p_place, loaded_for_.p_place);
+}
+
+// Lists the pages within `reach` (steps) of the paths of a position.
+void PagedSurface::want(const Cursor& cursor, double reach) {
   const Lattice& lattice = file_.lattice();
   const auto in_steps = [&lattice](const std::array<double, 3>& p) -> Vector3d {
     return (Eigen::Map<const Vector3d>(p.data()) - lattice.origin) / lattice.step;
@@ -46,10 +67,10 @@ void PagedSurface::want(const Cursor& cursor) {
   const Vector3d ahead =
       settings_.horizon / lattice.step * Eigen::Map<const Vector3d>(cursor.v_W.data());
   wanted_.clear();
-  want_along(place, ahead);
+  want_along(place, ahead, reach);
   if (tip != place) {
-    want_along(tip, place - tip);
-    want_along(tip, ahead);
+    want_along(tip, place - tip, reach);
+    want_along(tip, ahead, reach);
   }
   // Pages that are reached later may be loaded later.
   std::sort(wanted_.begin(), wanted_.end());
@@ -57,8 +78,7 @@ void PagedSurface::want(const Cursor& cursor) {
 
 // Adds the pages within reach of a straight path, each with its distance along the path and from
 // it.
-void PagedSurface::want_along(const Vector3d& p, const Vector3d& way) {
-  const double reach = settings_.reach / file_.lattice().step;
+void PagedSurface::want_along(const Vector3d& p, const Vector3d& way, double reach) {
   const double length = way.norm();
   const Vector3d along = length > 0 ? Vector3d(way / length) : Vector3d::Zero();
   // Pieces no longer than the reach, so that the boxes around them contain little else.
@@ -89,16 +109,23 @@ void PagedSurface::want_along(const Vector3d& p, const Vector3d& way) {
 
 std::size_t PagedSurface::serve() {
   Cursor cursor;
-  if (!cursor_.load(cursor)) return 0;
+  if (!cursor_.load(cursor) || suffices_for(cursor)) return 0;
+  const double reach = settings_.reach / file_.lattice().step;
   ++round_;
-  want(cursor);
+  want(cursor, (1 + kSpare) * reach);
+  bool spare = true;
+  if (wanted_.size() > frames_.size()) {
+    spare = false;
+    ++round_;
+    want(cursor, reach);
+  }
   if (wanted_.size() > frames_.size()) {
     wanted_.resize(frames_.size());
     short_of_frames_.fetch_add(1, std::memory_order_relaxed);
   }
   for (const auto& [distance, page] : wanted_) {
     const std::int32_t frame = table_[static_cast<std::size_t>(page)].load();
-    if (frame >= 0) wanted_at_[static_cast<std::size_t>(frame)] = round_;
+    if (frame >= 0) mark_wanted(frame);
   }
   // A few pages at a time, then the tip's position is read again.
   constexpr std::size_t kAtOnce = 16;
@@ -106,24 +133,32 @@ std::size_t PagedSurface::serve() {
   for (const auto& [distance, page] : wanted_) {
     if (announced == kAtOnce) break;
     if (table_[static_cast<std::size_t>(page)].load(std::memory_order_relaxed) != kAbsent) continue;
-    file_.announce_page(page);
-    ++announced;
+    // The first one is read at once.
+    if (announced++ > 0) file_.announce_page(page);
   }
   std::size_t read = 0;
+  all_loaded_ = spare;
   for (const auto& [distance, page] : wanted_) {
-    if (read == kAtOnce || stop_.load(std::memory_order_relaxed)) break;
     if (table_[static_cast<std::size_t>(page)].load() != kAbsent) continue;
+    if (read == kAtOnce || stop_.load(std::memory_order_relaxed)) {
+      all_loaded_ = false;
+      break;
+    }
     const std::int32_t frame = free_frame();
-    if (frame < 0 || !load(page, frame)) continue;
-    ++read;
+    if (frame >= 0 && load(page, frame)) ++read;
   }
+  loaded_for_ = cursor;
   return read;
 }
 
+void PagedSurface::mark_wanted(std::int32_t frame) {
+  wanted_at_[static_cast<std::size_t>(frame)] = round_;
+  order_.use(frame);
+}
+
 std::int32_t PagedSurface::free_frame() {
-  const auto oldest = std::min_element(wanted_at_.begin(), wanted_at_.end());
-  if (*oldest == round_) return -1;
-  const auto number = static_cast<std::int32_t>(oldest - wanted_at_.begin());
+  const std::int32_t number = order_.oldest();
+  if (wanted_at_[static_cast<std::size_t>(number)] == round_) return -1;
   std::int32_t& page = page_in_frame_[static_cast<std::size_t>(number)];
   if (page >= 0) {
     table_[static_cast<std::size_t>(page)].store(kAbsent, std::memory_order_seq_cst);
@@ -143,17 +178,16 @@ void PagedSurface::wait_for_ticks_end() const {
 }
 
 bool PagedSurface::load(std::int32_t page, std::int32_t frame_number) {
+  // A tick may still use the frame if its end was not awaited.
+  if (stop_.load(std::memory_order_relaxed)) return false;
   Frame& frame = frames_[static_cast<std::size_t>(frame_number)];
-  const std::int32_t count = file_.read_page(page, incoming_);
-  if (count == 0 || stop_.load(std::memory_order_relaxed)) {
-    if (count == 0) {
-      // It would fail again, and keep the loader from other pages.
-      table_[static_cast<std::size_t>(page)].store(kDamaged, std::memory_order_relaxed);
-      failures_.fetch_add(1, std::memory_order_relaxed);
-    }
+  const std::int32_t count = file_.read_page(page, frame.triangles);
+  if (count == 0) {
+    // It would fail again, and keep the loader from other pages.
+    table_[static_cast<std::size_t>(page)].store(kDamaged, std::memory_order_relaxed);
+    failures_.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
-  std::copy_n(incoming_.begin(), count, frame.triangles.begin());
   frame.count = count;
   for (std::int32_t begin = 0; begin < count; begin += kGroup) {
     const auto size = static_cast<std::size_t>(std::min(kGroup, count - begin));
@@ -161,7 +195,7 @@ bool PagedSurface::load(std::int32_t page, std::int32_t frame_number) {
         box_of({frame.triangles.data() + begin, size});
   }
   page_in_frame_[static_cast<std::size_t>(frame_number)] = page;
-  wanted_at_[static_cast<std::size_t>(frame_number)] = round_;
+  mark_wanted(frame_number);
   loads_.fetch_add(1, std::memory_order_relaxed);
   table_[static_cast<std::size_t>(page)].store(frame_number, std::memory_order_seq_cst);
   return true;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "field/between_faces.h"
 #include "mesh/position_range.h"
 
 namespace thimble::render {
@@ -38,8 +39,8 @@ const ContactState& EntryFaceContact::update(const driver::DeviceState& state) n
 bool EntryFaceContact::behind(const Eigen::Vector3d& p_O, std::int32_t face) const noexcept {
   const Eigen::Index u = (face / 2 + 1) % 3;
   const Eigen::Index v = (face / 2 + 2) % 3;
-  return box_.depth(p_O, face) > 0 && std::abs(p_O[u]) < box_.half_sides[u] &&
-         std::abs(p_O[v]) < box_.half_sides[v];
+  return box_.depth(p_O, face) > 0 && between_faces(box_, p_O[u], u) &&
+         between_faces(box_, p_O[v], v);
 }
 
 /// Returns the face through which a straight path (O, m) enters the box; -1 if it begins inside or

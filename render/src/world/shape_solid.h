@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "field/between_faces.h"
 #include "field/entry_face_contact.h"
 #include "field/faced_contact.h"
 #include "field/primitive_contact.h"
@@ -57,7 +58,7 @@ inline SolidEntry first_entry(const Box& box, const Eigen::Vector3d& p_from,
   std::int32_t face = -1;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const double half = box.half_sides[axis];
-    const bool beside = !(std::abs(from[axis]) < half);
+    const bool beside = !between_faces(box, from[axis], axis);
     if (beside && !(way[axis] * from[axis] < 0)) return {};
     if (way[axis] != 0) {
       out = std::fmin(out, (std::copysign(half, way[axis]) - from[axis]) / way[axis]);
@@ -149,6 +150,7 @@ class ShapeSolid final : public WorldSolid {
     return shape_solid::first_entry(shape(), p_from, p_to);
   }
   const ContactState& begin(std::int32_t face, const Eigen::Vector3d& p_WP) noexcept override {
+    face_ = face;
     contact().begin(face, p_WP);
     return contact().state();
   }
@@ -157,7 +159,18 @@ class ShapeSolid final : public WorldSolid {
     driver::DeviceState state;
     state.p_WT = p_W;
     const ContactState& found = contact().update(state);
-    if (found.touching) face_ = found.triangle;
+    if (found.touching) {
+      face_ = found.triangle;
+    } else if constexpr (std::is_same_v<Shape, WedgeBox>) {
+      // Exactly in the plane of another face, its depth is 0; the last face still holds.
+      const Eigen::Vector3d p_O = shape().to_box(p_W);
+      const double depth = shape().depth(p_O, face_);
+      if (holds(p_W) && depth > 0) {
+        held_ = {.touching = true, .triangle = face_, .depth = depth, .n_W = shape().normal(face_)};
+        held_.p_WP = p_W + depth * held_.n_W;
+        return held_;
+      }
+    }
     return found;
   }
   bool follows_closely() const noexcept override { return !std::is_same_v<Shape, WedgeBox>; }
@@ -166,7 +179,7 @@ class ShapeSolid final : public WorldSolid {
     held_ = last;
     held_.depth = last.n_W.dot(last.p_WP - p_W);
     held_.p_WP = p_W + held_.depth * last.n_W;
-    held_.touching = held_.depth > 0 && inside(held_.p_WP - kBelow * rounding() * last.n_W);
+    held_.touching = held_.depth > 0 && holds(held_.p_WP - kBelow * rounding() * last.n_W);
     held_.hops = 0;
     return held_;
   }
@@ -186,6 +199,17 @@ class ShapeSolid final : public WorldSolid {
     const ContactState& contact;
     const ContactState& state() const noexcept { return contact; }
   };
+
+  // Returns whether a point is inside, or on a face as between_faces decides.
+  bool holds(const Eigen::Vector3d& p_W) const noexcept {
+    if constexpr (std::is_base_of_v<Box, Shape>) {
+      const Eigen::Vector3d p_O = shape().to_box(p_W);
+      return between_faces(shape(), p_O[0], 0) && between_faces(shape(), p_O[1], 1) &&
+             between_faces(shape(), p_O[2], 2);
+    } else {
+      return inside(p_W);
+    }
+  }
 
   Contact& contact() const noexcept { return law_.contact().contact(); }
   const Shape& shape() const noexcept { return contact().shape(); }

@@ -140,6 +140,7 @@
   let begun = false;
   function begin() {
     begun = true;
+    showMapScales(byId('scales'));
     byId('title').textContent = about.title;
     byId('subtitle').textContent = about.subtitle;
     byId('subtitle').title = about.subtitle;

@@ -27,13 +27,16 @@ function makeStage(box) {
                                      object.crease);
     const first = of(prefix);
     const left = object.left ? of(prefix + 'left.') : null;
-    const mesh = new THREE.Mesh(first, new THREE.MeshPhongMaterial({
-      color: objectColour(i), specular: 0x222222, shininess: 25, side: THREE.DoubleSide,
+    const values = object.map ? numbers(prefix + 'map') : null;
+    const drawn = values ? mappedGeometry(first, values, object.map.parts, i) : first;
+    const mesh = new THREE.Mesh(drawn, new THREE.MeshPhongMaterial({
+      color: values ? '#ffffff' : objectColour(i),
+      vertexColors: values ? THREE.VertexColors : THREE.NoColors, specular: 0x222222, shininess: 25, side: THREE.DoubleSide,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1}));
     scene.add(mesh);
-    first.computeBoundingBox();
-    if (!object.endless && first.attributes.position.count > 0) bounds.union(first.boundingBox);
-    return {mesh, first, left};
+    drawn.computeBoundingBox();
+    if (!object.endless && drawn.attributes.position.count > 0) bounds.union(drawn.boundingBox);
+    return {mesh, first: drawn, left};
   });
   for (const arm of arms) {
     const p = new THREE.Vector3();

@@ -369,29 +369,42 @@ YamlMap YamlMap::require_map(std::string_view key) {
 }
 
 std::vector<YamlMap> YamlMap::require_maps(std::string_view key) {
+  std::vector<YamlMap> maps;
+  maps.reserve(list_size(key));
+  visit_maps(key, [&maps](YamlMap& map) { maps.push_back(std::move(map)); });
+  return maps;
+}
+
+void YamlMap::visit_maps(std::string_view key, const std::function<void(YamlMap&)>& visit) {
   note(key, {ValueType::kMaps}, "a list of maps, at least one", true);
   const std::string place =
       (place_.empty() ? std::string(key) : place_ + '.' + std::string(key)) + "[]";
-  std::vector<YamlMap> maps;
   const Entry* entry = find(key, true);
   if (entry == nullptr) {
-    if (mistakes_->keys() == nullptr) return maps;
+    if (mistakes_->keys() == nullptr) return;
     // An entry without values, so that its keys are requested and logged.
-    maps.emplace_back(YamlNode::empty_map(), key, line_, mistakes_);
-    maps.back().quiet_ = true;
-    maps.back().place_ = place;
-    return maps;
+    YamlMap map(YamlNode::empty_map(), key, line_, mistakes_);
+    map.quiet_ = true;
+    map.place_ = place;
+    visit(map);
+    return;
   }
   if (!entry->value.is_list() || entry->value.size() == 0) {
     expected(*entry, "a list with at least one entry");
-    return maps;
+    return;
   }
-  maps.reserve(entry->value.size());
   entry->value.each_entry([&](const YamlNode& node) {
-    maps.emplace_back(node, key, entry->line, mistakes_);
-    maps.back().place_ = place;
+    YamlMap map(node, key, entry->line, mistakes_);
+    map.place_ = place;
+    visit(map);
   });
-  return maps;
+}
+
+std::size_t YamlMap::list_size(std::string_view key) const {
+  for (const Entry& entry : entries_) {
+    if (entry.key == key) return entry.value.is_list() ? entry.value.size() : 0;
+  }
+  return 0;
 }
 
 int YamlMap::line_for(std::string_view key) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -171,6 +172,13 @@ class YamlMap {
 
   /// Returns a list of maps with at least one entry. A mistake returns an empty list.
   std::vector<YamlMap> require_maps(std::string_view key);
+
+  /// Calls `visit` with each map that `require_maps` would return. Each is made for its call, so a
+  /// long list takes the memory of one.
+  void visit_maps(std::string_view key, const std::function<void(YamlMap&)>& visit);
+
+  /// Returns the number of entries of a list; 0 if the key is absent or its value is not a list.
+  std::size_t list_size(std::string_view key) const;
 
   /// Adds a failed check of this map's values against each other or against others, at the line of
   /// `key` (or of this map). It is reported only if all values of the file are valid.

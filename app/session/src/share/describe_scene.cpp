@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "body/shape/body_shape.h"
+#include "map_picture.h"
 #include "share/describe/field_samples.h"
 
 namespace thimble::session {
@@ -42,6 +43,20 @@ std::string names_of(const scene::SceneObject& object, std::string_view group) {
     names += effect.kind->name;
   }
   return names;
+}
+
+// Adds the map of an object, if it has one.
+void describe_map(const scene::Scene& scene, const scene::SceneObjects& objects, std::size_t i,
+                  SharedScene& described) {
+  const auto map = objects.map_picture(scene, i);
+  if (!map) return;
+  described.objects[i].map = {.quantity = std::string(map->quantity),
+                              .unit = std::string(map->unit),
+                              .min = map->min,
+                              .max = map->max,
+                              .parts = map->parts,
+                              .first_value = described.map_values.size()};
+  described.map_values.insert(described.map_values.end(), map->values.begin(), map->values.end());
 }
 
 // Returns the largest number of edges of an object that may be split during the run.
@@ -83,6 +98,7 @@ SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects&
                                  .crease_angle = object.contact.crease_angle.value_or(kCreaseDrawn),
                                  .texture = names_of(object, "texture"),
                                  .friction = names_of(object, "friction")});
+    describe_map(scene, objects, i, described);
   }
   described.field = sample_fields(scene);
   return described;

@@ -17,8 +17,8 @@ namespace thimble::session {
 //
 //   SharedHead   written once, before `ready` is set; its hash covers the tables marked (*)
 //   SharedLive   changes during the run: lock-free atomics and snapshots only
-//   tables       where the head says: objects*, knobs*, vertices*, triangles*, field, shaped,
-//   splits, ring
+//   tables       where the head says: objects*, knobs*, vertices*, triangles*, map_values*, field,
+//   shaped, splits, ring
 //
 // Offsets are bytes from the head and multiples of 64; there are no pointers. Frames: W world.
 
@@ -39,6 +39,9 @@ inline constexpr std::int64_t kFirstViewerByte = 16;
 inline constexpr std::size_t kKnobsMax = 64;
 /// Largest number of objects. Chosen as a bound for readers.
 inline constexpr std::size_t kObjectsMax = 1024;
+/// Largest number of parts of a side of a triangle with a map. Chosen: more than kMapPartsMax gives
+/// for one triangle.
+inline constexpr std::uint32_t kMapSideMax = 256;
 /// Largest number of field samples. Chosen: more would hide each other.
 inline constexpr std::size_t kFieldSamplesMax = 4096;
 inline constexpr std::size_t kArmsMax = 8;  ///< Largest number of arms, as in a scene.
@@ -118,7 +121,7 @@ struct SharedHead {
   SharedText<1024> scene_file{};
   std::uint64_t arm_count = 0;  ///< Number of used entries of `arms`; at least 1.
   std::array<SharedArm, kArmsMax> arms{};
-  SharedTable objects, knobs, vertices, triangles, field, shaped, splits, ring;
+  SharedTable objects, knobs, vertices, triangles, map_values, field, shaped, splits, ring;
 };
 static_assert(std::is_standard_layout_v<SharedHead>);
 
@@ -134,7 +137,7 @@ struct SharedObject {
   std::uint32_t dents = 0;   ///< 1: BodyPatch contains its dent.
   /// 1: it has permanent deformation; its vertices are in the table `shaped`.
   std::uint32_t shaped = 0;
-  std::uint32_t unused = 0;
+  std::uint32_t map_parts = 0;  ///< Parts of each side of a triangle; 0: it has no map.
   std::uint64_t first_vertex = 0, vertex_count = 0;
   std::uint64_t first_triangle = 0, triangle_count = 0;
   /// Index in the table `shaped`; one entry per vertex and split.
@@ -145,6 +148,9 @@ struct SharedObject {
   SharedText<64> texture{};
   /// Names of its friction effects in scenes; empty: none.
   SharedText<64> friction{};
+  SharedText<16> map_quantity{}, map_unit{};
+  double map_min = 0, map_max = 0;
+  std::uint64_t first_map_value = 0;  ///< Index in the table `map_values`.
 };
 
 /// Total force of all fields on a resting tip at one point (W), at the start of the scene.

@@ -49,6 +49,7 @@ std::uint64_t lay_out(const SharedScene& scene, std::size_t ring_ticks, SharedHe
   lay(head.knobs, scene.knobs.size(), sizeof(SharedKnob));
   lay(head.vertices, scene.vertices.size(), sizeof(SharedVertex));
   lay(head.triangles, scene.triangles.size(), sizeof(SharedTriangle));
+  lay(head.map_values, scene.map_values.size(), sizeof(float));
   lay(head.field, std::min(scene.field.size(), kFieldSamplesMax), sizeof(SharedFieldSample));
   lay(head.shaped, shaped, sizeof(SharedShaped));
   lay(head.splits, splits, sizeof(SharedSplit));
@@ -172,6 +173,12 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
     to.crease_angle = object.crease_angle;
     put(object.texture, to.texture);
     put(object.friction, to.friction);
+    put(object.map.quantity, to.map_quantity);
+    put(object.map.unit, to.map_unit);
+    to.map_parts = object.map.parts;
+    to.map_min = object.map.min;
+    to.map_max = object.map.max;
+    to.first_map_value = object.map.first_value;
   }
   const auto knobs = table_in<SharedKnob>(memory, head_->knobs);
   knobs_.assign(scene.knobs.begin(),
@@ -189,6 +196,8 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = plain(scene.vertices[i]);
   const auto triangles = table_in<SharedTriangle>(memory, head_->triangles);
   std::copy(scene.triangles.begin(), scene.triangles.end(), triangles.begin());
+  const auto map_values = table_in<float>(memory, head_->map_values);
+  std::copy(scene.map_values.begin(), scene.map_values.end(), map_values.begin());
   const auto field = table_in<SharedFieldSample>(memory, head_->field);
   for (std::size_t i = 0; i < field.size(); ++i) {
     field[i] = {.p_W = plain(scene.field[i].p_W), .f_W = plain(scene.field[i].f_W)};
@@ -200,7 +209,7 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   ring_ = table_in<SharedRingSlot>(memory, head_->ring).data();
   ring_count_ = head_->ring.count;
 
-  head_->hash = shared_hash(*head_, objects, knobs, vertices, triangles);
+  head_->hash = shared_hash(*head_, objects, knobs, vertices, triangles, map_values);
   head_->ready.store(kSharedReady, std::memory_order_release);
 }
 

@@ -1,6 +1,7 @@
 #include "share/shared_scene.h"
 #include "share/layout/shared_layout_hash.h"
 #include "share/shared_geometry.h"
+#include "surface/map/triangle_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -83,6 +84,25 @@ bool take_arm(const SharedArm& shared, SharedScene::Arm& arm) {
   return true;
 }
 
+/// Validates the map of an object. Precondition: its count of triangles is within the table.
+bool take_map(const SharedObject& shared, const SharedHead& head, SharedScene::Map& map) {
+  if (shared.map_parts == 0) return true;
+  // Written so that NaN is rejected. Neither count can overflow: see kMapSideMax, kSharedBytesMax.
+  if (shared.map_parts > kMapSideMax || !(shared.map_min <= shared.map_max) ||
+      !std::isfinite(shared.map_max - shared.map_min) ||
+      !within(shared.first_map_value, shared.triangle_count * render::grid_points(shared.map_parts),
+              head.map_values.count)) {
+    return false;
+  }
+  map = {.quantity = text_of(shared.map_quantity),
+         .unit = text_of(shared.map_unit),
+         .min = shared.map_min,
+         .max = shared.map_max,
+         .parts = shared.map_parts,
+         .first_value = shared.first_map_value};
+  return true;
+}
+
 /// Validates an object against the tables to which it refers.
 bool take_object(const SharedObject& shared, const SharedHead& head,
                  const std::vector<SharedTriangle>& triangles, SharedScene::Object& object) {
@@ -121,7 +141,7 @@ bool take_object(const SharedObject& shared, const SharedHead& head,
             .crease_angle = shared.crease_angle,
             .texture = text_of(shared.texture),
             .friction = text_of(shared.friction)};
-  return true;
+  return take_map(shared, head, object.map);
 }
 
 bool take_knob(const SharedKnob& shared, SharedScene::Knob& knob) {
@@ -146,7 +166,8 @@ void copy_head(std::span<const std::byte> memory, SharedHead& head) {
 
 std::uint64_t shared_hash(const SharedHead& head, std::span<const SharedObject> objects,
                           std::span<const SharedKnob> knobs, std::span<const SharedVertex> vertices,
-                          std::span<const SharedTriangle> triangles) noexcept {
+                          std::span<const SharedTriangle> triangles,
+                          std::span<const float> map_values) noexcept {
   constexpr std::uint64_t kBegin = 0xcbf29ce484222325;
   SharedHead counted{};
   copy_head(std::as_bytes(std::span(&head, 1)), counted);
@@ -155,7 +176,8 @@ std::uint64_t shared_hash(const SharedHead& head, std::span<const SharedObject> 
   hash = mix_bytes(hash, std::as_bytes(objects));
   hash = mix_bytes(hash, std::as_bytes(knobs));
   hash = mix_bytes(hash, std::as_bytes(vertices));
-  return mix_bytes(hash, std::as_bytes(triangles));
+  hash = mix_bytes(hash, std::as_bytes(triangles));
+  return mix_bytes(hash, std::as_bytes(map_values));
 }
 
 driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory) {
@@ -182,6 +204,7 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
       !lies_in(head.knobs, sizeof(SharedKnob), total) ||
       !lies_in(head.vertices, sizeof(SharedVertex), total) ||
       !lies_in(head.triangles, sizeof(SharedTriangle), total) ||
+      !lies_in(head.map_values, sizeof(float), total) ||
       !lies_in(head.field, sizeof(SharedFieldSample), total) ||
       !lies_in(head.shaped, sizeof(SharedShaped), total) ||
       !lies_in(head.splits, sizeof(SharedSplit), total) ||
@@ -198,7 +221,8 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
   const auto vertices = copy_of<SharedVertex>(memory, head.vertices);
   SharedScene scene;
   scene.triangles = copy_of<SharedTriangle>(memory, head.triangles);
-  if (shared_hash(head, objects, knobs, vertices, scene.triangles) != head.hash) {
+  scene.map_values = copy_of<float>(memory, head.map_values);
+  if (shared_hash(head, objects, knobs, vertices, scene.triangles, scene.map_values) != head.hash) {
     return broken("its checksum is wrong");
   }
 
@@ -224,6 +248,9 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
     if (!take_object(object, head, scene.triangles, scene.objects.emplace_back())) {
       return broken("an object is invalid");
     }
+  }
+  for (const float value : scene.map_values) {
+    if (!(value >= 0 && value <= 1)) return broken("a value of a map is out of bounds");
   }
   for (const SharedKnob& knob : knobs) {
     if (!take_knob(knob, scene.knobs.emplace_back())) return broken("a knob is invalid");

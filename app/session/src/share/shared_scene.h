@@ -18,6 +18,14 @@ namespace thimble::session {
 /// Constant data of a run, copied from its shared memory and validated: all counts and vertex
 /// indices are within bounds, all positions finite.
 struct SharedScene {
+  /// Map of a mesh as drawn (render/src/map_picture.h).
+  struct Map {
+    std::string quantity{};  ///< "stiffness"; empty: no map.
+    std::string unit{};
+    double min = 0, max = 0;      ///< Values at 0 and 1, in `unit`; min <= max.
+    std::uint32_t parts = 0;      ///< Parts of each side of a triangle; 0: no map.
+    std::size_t first_value = 0;  ///< Index of its first value in `map_values`.
+  };
   /// Object: a range of `vertices` and `triangles`.
   struct Object {
     std::string name;
@@ -34,6 +42,7 @@ struct SharedScene {
     double crease_angle = 0;  ///< Edges sharper than this stay sharp, rad.
     /// Names of its texture and friction; empty: none.
     std::string texture{}, friction{};
+    Map map{};
   };
   /// Total force of the fields on a resting tip at one point, at the start of the scene.
   struct FieldSample {
@@ -80,6 +89,8 @@ struct SharedScene {
   std::vector<Eigen::Vector3d> vertices;  ///< Initial vertices in the world, m.
   /// Triangles as indices into `vertices`, counter-clockwise from outside.
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  /// Values of the maps of all objects, 0 to 1: those of the grid of each triangle.
+  std::vector<float> map_values;
   SharedTable shaped, splits, ring;  ///< Places of these tables, completely within the memory.
 };
 
@@ -92,6 +103,7 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
 /// tables. It detects accidental damage, not manipulation. Real-time: never from the servo thread.
 std::uint64_t shared_hash(const SharedHead& head, std::span<const SharedObject> objects,
                           std::span<const SharedKnob> knobs, std::span<const SharedVertex> vertices,
-                          std::span<const SharedTriangle> triangles) noexcept;
+                          std::span<const SharedTriangle> triangles,
+                          std::span<const float> map_values) noexcept;
 
 }  // namespace thimble::session

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "studies/accuracy/axes/axes.h"
+#include "studies/added_forces.h"
 #include "studies/cost/cost_subjects.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/build_primitive_touch.h"
@@ -68,17 +69,6 @@ SceneTouch floor_of(int count, TrackerChoice tracker) {
   }
   return SceneTouch(std::move(blocks));
 }
-
-/// The forces of objects that know nothing of each other, added.
-struct AddedForces {
-  std::vector<SceneTouch> objects;
-
-  driver::ForceCommand operator()(const driver::DeviceState& state) noexcept {
-    driver::ForceCommand sum;
-    for (SceneTouch& object : objects) sum.f_T_W += object(state).f_T_W;
-    return sum;
-  }
-};
 
 AddedForces added_floor(int count) {
   AddedForces added;

@@ -57,6 +57,10 @@ class UvHeightMap {
   }
   void leave() noexcept { follower_.leave(); }
 
+  const std::shared_ptr<const SurfaceMap>& map() const noexcept { return map_; }
+  /// Returns the height of black below white, m.
+  double height() const noexcept { return height_; }
+
   /// Lists the height. Real-time: never from the servo thread.
   void list_settings(LiveSettings& settings);
 

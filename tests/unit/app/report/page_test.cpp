@@ -319,6 +319,38 @@ TEST(Page, MinuteAtOneKilohertzIsBelowTenMegabytes) {
   EXPECT_LT(base64(block.bytes()).size() + kLibraries, 10'000'000U);
 }
 
+/// A triangle with a map of two parts along each side.
+session::SharedScene mapped_triangle() {
+  session::SharedScene scene;
+  scene.vertices = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}};
+  scene.triangles = {{0, 1, 2}};
+  scene.objects.push_back({.name = "pad", .vertex_count = 3, .triangle_count = 1});
+  scene.objects[0].map = {
+      .quantity = "stiffness", .unit = "N/m", .min = 250, .max = 800, .parts = 2, .first_value = 1};
+  scene.map_values = {0.9F, 0, 0.2F, 0.4F, 0.6F, 0.8F, 1};
+  return scene;
+}
+
+TEST(Page, HasTheMapOfAnObjectWithItsRange) {
+  PageTouch touch;
+  touch.scene = mapped_triangle();
+  PageBlock block;
+  const auto objects = page_objects(touch, block);
+  EXPECT_EQ(objects[0]["map"].dump(),
+            R"({"quantity":"stiffness","unit":"N/m","min":250.0,"max":800.0,"parts":2})");
+  EXPECT_EQ(numbers_of<std::uint8_t>(block, "object0.map"),
+            (std::vector<std::uint8_t>{0, 51, 102, 153, 204, 255}));
+}
+
+TEST(Page, AnObjectWithoutAMapAddsNothingForIt) {
+  PageTouch touch;
+  touch.scene = mapped_triangle();
+  touch.scene.objects[0].map = {};
+  PageBlock block;
+  EXPECT_FALSE(page_objects(touch, block)[0].contains("map"));
+  EXPECT_FALSE(block.arrays().contains("object0.map"));
+}
+
 TEST(PageMarks, ShowFaultsAndTheGateInARecording) {
   auto ticks = lively_run(3000);
   for (std::size_t i = 500; i < 520; ++i) ticks[i].f_sent_W = {0, 0, 0.1};

@@ -10,6 +10,7 @@
 
 #include "files/kept_scene.h"
 #include "files/scene_inputs.h"
+#include "map_picture.h"
 #include "support/scratch.h"
 #include "text_file.h"
 #include "thimble/scene/scene_file.h"
@@ -127,6 +128,30 @@ TEST_F(MapScenes, RepairKeepsTheMaps) {
                        "stiffness_map: {vertex_colour: red, min: 100, max: 600}")
                   .z(),
               0.35, 1e-6);
+}
+
+// Returns the drawn map of an object; its quantity is empty if it has none.
+render::MapPicture drawn_map(const std::string& object) {
+  const auto scene = load_scene(write("drawn.yaml", scene_with(object)));
+  EXPECT_TRUE(scene) << scene.error().message;
+  if (!scene) return {};
+  const auto objects = SceneObjects::build(*scene);
+  EXPECT_TRUE(objects) << objects.error().message;
+  if (!objects) return {};
+  return (*objects)->map_picture(*scene, 0).value_or(render::MapPicture{});
+}
+
+TEST_F(MapScenes, DrawnMapHasTheValuesThatAreFelt) {
+  for (const char* repair : {"", "repair: true, "}) {
+    const render::MapPicture red =
+        drawn_map(std::string(repair) +
+                  "mesh: red.obj, stiffness_map: {vertex_colour: red, min: 100, max: 600}");
+    EXPECT_EQ(red.quantity, "stiffness");
+    EXPECT_DOUBLE_EQ(red.min, 100);
+    EXPECT_DOUBLE_EQ(red.max, 600);
+    ASSERT_EQ(red.values.size(), 12U * 3);
+    for (const float value : red.values) EXPECT_NEAR(value, 0.5, 1e-6);
+  }
 }
 
 TEST_F(MapScenes, PicturesOfAllKindsAreRead) {

@@ -110,6 +110,26 @@ TEST(SceneFile, AcceptsAProfileOnlyForBands) {
   }
 }
 
+TEST(SceneFile, CopiedObjectHasItsOwnRareSettings) {
+  SceneObject object;
+  object.body.dent.emplace().rings = 2;
+  SceneObject copy = object;
+  copy.body.dent->rings = 3;
+  EXPECT_EQ(object.body.dent->rings, 2);
+  EXPECT_EQ(std::optional<render::DentSettings>(object.body.dent)->rings, 2);
+  copy = object;
+  EXPECT_EQ(copy.body.dent->rings, 2);
+  copy = SceneObject{};
+  EXPECT_FALSE(copy.body.dent.has_value());
+  EXPECT_FALSE(std::optional<render::DentSettings>(copy.body.dent).has_value());
+  EXPECT_TRUE(object.body.dent.has_value());
+}
+
+// A scene may have 100,000 shapes, most of them without a body or maps.
+TEST(SceneFile, ObjectWithoutRareSettingsIsSmall) {
+  EXPECT_LE(sizeof(SceneObject), 720u);
+}
+
 TEST(SceneFile, ReadsDentsAndReportsMistakes) {
   const auto with = [](const std::string& dent) {
     return "  - {name: b, mesh: cgal:ball.off, stiffness: 1, body: {dent: {" + dent + "}}}\n";

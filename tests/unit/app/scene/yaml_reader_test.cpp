@@ -7,6 +7,7 @@
 #include <ctime>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "yaml/key_log.h"
 #include "yaml/yaml_words.h"
@@ -46,6 +47,22 @@ TEST(YamlReader, ReadsAliasesAsTheirAnchors) {
   EXPECT_EQ(mistakes_in("stiffness: 800\nparts: [&a {mass: 0.1}, *a, *a]\n"), "");
   EXPECT_EQ(mistakes_in("stiffness: 800\nparts: [&a {mass: *a}]\n"),
             "arm.yaml:2: mass: expected a number from 0 to 1 kg, found a map.");
+}
+
+TEST(YamlReader, VisitsTheMapsThatRequireMapsReturns) {
+  auto file = YamlFile::parse("parts: [{mass: 1}, {mass: 2}, {mass: 3}]\nnone: 4\n", "arm.yaml");
+  ASSERT_TRUE(file);
+  std::vector<double> visited, returned;
+  file->root().visit_maps(
+      "parts", [&](YamlMap& part) { visited.push_back(part.require_number("mass", "kg", 0, 10)); });
+  for (YamlMap& part : file->root().require_maps("parts")) {
+    returned.push_back(part.require_number("mass", "kg", 0, 10));
+  }
+  EXPECT_EQ(visited, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(returned, visited);
+  EXPECT_EQ(file->root().list_size("parts"), 3u);
+  EXPECT_EQ(file->root().list_size("none"), 0u);
+  EXPECT_EQ(file->root().list_size("absent"), 0u);
 }
 
 TEST(YamlReader, NonNumberErrorNamesFileLineAndRange) {

@@ -62,6 +62,9 @@ session::SharedScene small_scene() {
                            .max_splits = 2});
   scene.objects[0].texture = "sandpaper";
   scene.objects[0].friction = "bristle, dahl";
+  scene.objects[0].map = {
+      .quantity = "stiffness", .unit = "N/m", .min = 200, .max = 800, .parts = 2};
+  scene.map_values = {0, 0.25F, 0.5F, 0.75F, 1, 0.125F};
   scene.field = {{{0, 0, 0.1}, {0, 0, -1}}, {{0, 0, 0.2}, {0, 0.5, 0}}};
   scene.knobs.push_back({"stiff: stiffness", "N/m", 0, 1000, 800});
   return scene;
@@ -158,6 +161,38 @@ TEST(Share, ShowsTheSceneAsItWasDescribed) {
   EXPECT_EQ(seen.knobs[0].name, "stiff: stiffness");
   EXPECT_EQ(seen.knobs[0].unit, "N/m");
   EXPECT_EQ(pair.reader->state(), session::RunState::kLoading);
+}
+
+TEST(Share, ShowsTheMapOfAnObject) {
+  const session::SharedScene scene = small_scene();
+  const Pair pair = joined(scene);
+  const session::SharedScene& seen = pair.reader->scene();
+  EXPECT_EQ(seen.objects[0].map.quantity, "stiffness");
+  EXPECT_EQ(seen.objects[0].map.unit, "N/m");
+  EXPECT_EQ(seen.objects[0].map.min, 200);
+  EXPECT_EQ(seen.objects[0].map.max, 800);
+  EXPECT_EQ(seen.objects[0].map.parts, 2U);
+  EXPECT_EQ(seen.map_values, scene.map_values);
+  EXPECT_EQ(seen.objects[1].map.parts, 0U) << "it has no map";
+}
+
+TEST(Share, RejectsAMapThatItsValuesDoNotFill) {
+  const auto refused = [](void (*spoil)(session::SharedScene & scene)) {
+    session::SharedScene scene = small_scene();
+    spoil(scene);
+    const auto run = session::SharedRun::create("", scene, 10).value();
+    return !session::SharedReader::over(run->memory().bytes());
+  };
+  EXPECT_FALSE(refused([](session::SharedScene&) {}));
+  EXPECT_TRUE(refused([](session::SharedScene& scene) { scene.map_values.pop_back(); }));
+  EXPECT_TRUE(refused([](session::SharedScene& scene) { scene.objects[0].map.parts = 3; }));
+  EXPECT_TRUE(refused([](session::SharedScene& scene) { scene.objects[0].map.parts = ~0U; }));
+  EXPECT_TRUE(refused([](session::SharedScene& scene) { scene.objects[0].map.first_value = 1; }));
+  EXPECT_TRUE(refused([](session::SharedScene& scene) { scene.objects[0].map.min = 801; }));
+  EXPECT_TRUE(refused([](session::SharedScene& scene) { scene.map_values[2] = 1.5F; }));
+  EXPECT_TRUE(refused([](session::SharedScene& scene) {
+    scene.map_values[2] = std::numeric_limits<float>::quiet_NaN();
+  }));
 }
 
 TEST(Share, ShowsTheNewestTickAndThoseBefore) {
@@ -930,12 +965,13 @@ TEST(Share, RejectsEveryFlippedByteOfConstantData) {
   };
   for (std::size_t at = 0; at < sizeof(session::SharedHead); ++at) refused(at);
   for (std::size_t at = head.objects.offset;
-       at < head.triangles.offset + head.triangles.count * sizeof(session::SharedTriangle); ++at) {
+       at < head.map_values.offset + head.map_values.count * sizeof(float); ++at) {
     // The bytes between two tables are not read.
     for (const auto& [table, size] : {std::pair(head.objects, sizeof(session::SharedObject)),
                                       std::pair(head.knobs, sizeof(session::SharedKnob)),
                                       std::pair(head.vertices, sizeof(session::SharedVertex)),
-                                      std::pair(head.triangles, sizeof(session::SharedTriangle))}) {
+                                      std::pair(head.triangles, sizeof(session::SharedTriangle)),
+                                      std::pair(head.map_values, sizeof(float))}) {
       if (at >= table.offset && at < table.offset + table.count * size) refused(at);
     }
   }

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -15,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "ball/box_ball.h"
 #include "support/box_union.h"
 #include "support/heap_guard.h"
 #include "support/meshes/concave_solids.h"
@@ -407,6 +409,29 @@ TEST(BallShapes, WhatDeformsIsRefused) {
     EXPECT_FALSE(
         build_object_touch(support::icosphere(2, 0.02), {.tip_radius = radius}, surface()));
   }
+}
+
+TEST(BallShapes, ABoxMovesItsClosestPointAsItsPartSays) {
+  Random random(7);
+  const Box box{.R_WO = Eigen::AngleAxisd(0.6, Vector3d(1, 2, 3).normalized()).toRotationMatrix(),
+                .p_WO = {0.01, 0, 0.02},
+                .half_sides = {0.03, 0.02, 0.01}};
+  const BoxBall ball(box, 0.005);
+  constexpr double kStep = 1e-7;  // m
+  std::array<int, 3> found{};
+  for (int i = 0; i < 300; ++i) {
+    const Vector3d q = box.p_WO + random.in_box(0.05);
+    if (box.inside(q)) continue;
+    const BallFeature part = ball.feature(0, q);
+    ++found.at(static_cast<std::size_t>(part.kind));
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3d step = kStep * Vector3d::Unit(axis);
+      const Vector3d moved =
+          (ball.feature(0, q + step).p_W - ball.feature(0, q - step).p_W) / (2 * kStep);
+      EXPECT_LT((part.slide().col(axis) - moved).norm(), 1e-7) << i;
+    }
+  }
+  for (const int count : found) EXPECT_GT(count, 20);
 }
 
 }  // namespace

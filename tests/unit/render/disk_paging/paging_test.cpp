@@ -196,6 +196,85 @@ TEST(PagedSurface, LoadsPagesWithinReachAndAhead) {
   EXPECT_EQ(surface->counters().failures, 0u);
 }
 
+TEST(PagedSurface, PagesWithinReachArePresentAfterSmallMoves) {
+  // Steps shorter than the distance for which pages were loaded in advance; the tip, the place and
+  // the velocity move in turn while the others rest.
+  const PagingSettings settings{.frames = 12, .reach = 0.004, .horizon = 0.02};
+  const auto surface = open(settings);
+  support::Random random(303);
+  constexpr int kSteps = 100;
+  std::uint64_t idle = 0;
+  for (int block = 0; block < 30; ++block) {
+    const Vector3d begin = 0.05 * random.direction(), heading = random.direction();
+    for (int step = 0; step < kSteps; ++step) {
+      const Vector3d moved = 0.05 * (begin + 0.0004 * step * heading).normalized();
+      const Vector3d p_tip = block % 3 == 0 ? moved : begin;
+      const Vector3d p_place = block % 3 == 1 ? moved : begin;
+      const Vector3d way = block % 3 == 2 ? Vector3d(moved - begin) : Vector3d(0, 0, 0);
+      const Vector3d v_W = way / settings.horizon;
+      surface->begin_tick(p_tip, p_place, v_W);
+      surface->end_tick();
+      const std::uint64_t before = surface->counters().loads;
+      serve_all(*surface);
+      if (surface->counters().loads == before) ++idle;
+      for (std::int32_t t = 0; t < bumpy().triangle_count(); t += 3) {
+        const Vector3d p = bumpy().position(t, 0);
+        for (const Vector3d& path :
+             {Vector3d(0.5 * (p_tip + p_place)), p_tip, p_place, Vector3d(p_tip + way)}) {
+          if ((p - path).norm() > settings.reach) continue;
+          ASSERT_TRUE(surface->find(t))
+              << "triangle " << t << " in step " << step << " of " << block;
+        }
+      }
+    }
+  }
+  EXPECT_GT(idle, 1000u);
+  EXPECT_EQ(surface->counters().short_of_frames, 0u);
+}
+
+TEST(PagedSurface, LoadsAheadOfItsReachWhereItHasRoom) {
+  const auto loads = [](std::size_t frames) {
+    const auto surface = open({.frames = frames, .reach = 0.02, .horizon = 0});
+    tick(*surface, {0, 0, 0.05});
+    serve_all(*surface);
+    EXPECT_EQ(surface->counters().short_of_frames, 0u) << frames;
+    return surface->counters().loads;
+  };
+  const std::uint64_t roomy = loads(20);
+  std::uint64_t tight = 0;  // loaded by the smallest number of frames that suffices
+  for (std::size_t frames = roomy - 1; frames > 0; --frames) {
+    const auto surface = open({.frames = frames, .reach = 0.02, .horizon = 0});
+    tick(*surface, {0, 0, 0.05});
+    serve_all(*surface);
+    if (surface->counters().short_of_frames > 0) break;
+    tight = surface->counters().loads;
+    EXPECT_LE(tight, frames);
+  }
+  EXPECT_GT(tight, 0u);
+  EXPECT_LT(tight, roomy);
+}
+
+TEST(PagedSurface, EvictsThePageThatWasWantedLeastRecently) {
+  // Two places in turn, and a third one: the pages of the first, wanted again, stay.
+  const auto surface = open({.frames = 6, .reach = 0.002, .horizon = 0});
+  const auto visit = [&](const Vector3d& p_W) {
+    tick(*surface, p_W);
+    serve_all(*surface);
+  };
+  const TreeSearch<PackedSurface> tree(bumpy());
+  const auto at = [&tree](const Vector3d& p_W) { return tree.closest(p_W, 1).triangle; };
+  const Vector3d a(0, 0, 0.05), b(0, 0.05, 0), c(0.05, 0, 0), d(-0.05, 0, 0);
+  visit(a);
+  visit(b);
+  for (int step = 0; step < 100; ++step) {
+    visit(a);
+    visit(step % 2 == 0 ? c : d);
+    ASSERT_TRUE(surface->find(at(a))) << step;
+  }
+  EXPECT_FALSE(surface->find(at(b)));
+  EXPECT_GT(surface->counters().evictions, 0u);
+}
+
 TEST(PagedSurface, KeepsTheNearestPagesWhenItHasTooFewFrames) {
   const auto surface = open({.frames = 2, .reach = 0.2, .horizon = 0});
   tick(*surface, {0, 0, 0.05});
@@ -271,7 +350,7 @@ TEST(PagedSurface, MatchesInsideAndNearestOfATreeInMemory) {
 
 TEST(PagedSurface, ReportsUnknownInsteadOfAWrongAnswer) {
   // A few of many pages: every answer that claims to be complete must be correct.
-  const auto surface = open({.frames = 5, .reach = 0.006, .horizon = 0});
+  const auto surface = open({.frames = 5, .reach = 0.0048, .horizon = 0});
   const TreeSearch<PackedSurface> tree(bumpy());
   support::Random random(10);
   int known = 0, unknown = 0;

@@ -233,7 +233,16 @@ void expect_entry(const Shape& shape, const Vector3d& from, const Vector3d& to, 
   }
   ASSERT_GE(entry.parameter, 0);
   ASSERT_LE(entry.parameter, 1);
-  if (first >= 0) {
+  if (first < 0) {
+    // A path that only grazes the shape between two samples.
+    bool grazes = false;
+    for (int i = -2000; i <= 2000 && !grazes; ++i) {
+      const double t = std::clamp(entry.parameter + 1e-3 * i / samples, 0.0, 1.0);
+      grazes = shape.inside(from + t * (to - from));
+    }
+    EXPECT_TRUE(grazes) << typeid(shape).name() << " is not where the path enters it, at "
+                        << entry.parameter;
+  } else {
     EXPECT_LE(entry.parameter, first + 1e-12);
     // An earlier entry lies between two samples, as deep as a grazing path is.
     const Vector3d before = from + std::max(0.0, entry.parameter - 1e-9) * (to - from);

@@ -96,10 +96,11 @@ INSTANTIATE_TEST_SUITE_P(Trackers, EachTracker, testing::ValuesIn(support::kTrac
                          });
 
 /// The same solids as shapes without a mesh.
+template <class Shape = EntryFaceBox>
 SceneTouch shapes_of(const std::vector<SolidBlock>& blocks) {
   std::vector<std::unique_ptr<ObjectTouch>> objects;
   for (const SolidBlock& block : blocks) {
-    EntryFaceBox box;
+    Shape box;
     box.R_WO = block.R;
     box.p_WO = block.centre;
     box.half_sides = block.half;
@@ -128,6 +129,38 @@ TEST(World, ShapesWithoutAMeshAreFeltAsMeshesAre) {
     EXPECT_LT(most, 1e-6);
     EXPECT_GT(largest, 1);
   }
+}
+
+template <class Shape>
+void expect_no_seam() {
+  for (const bool along_y : {false, true}) {
+    std::vector<SolidBlock> blocks = seam();
+    if (along_y) {
+      for (SolidBlock& block : blocks) {
+        std::swap(block.centre.x(), block.centre.y());
+        std::swap(block.half.x(), block.half.y());
+      }
+    }
+    for (const int order : {0, 1}) {
+      if (order == 1) std::swap(blocks[0], blocks[1]);
+      SceneTouch scene = shapes_of<Shape>(blocks);
+      scene(support::tip_at({0, 0, 0.01}));
+      // Down in the seam, along it, across it, and back.
+      for (int i = -100; i <= 100; ++i) {
+        const double across = i < -50 ? 0 : 1e-4 * (std::abs(i) - 50) * (i < 0 ? -1 : 1);
+        const double along = 1e-5 * i, depth = std::min(8e-4, 1e-4 * (i + 100));
+        const Vector3d p(along_y ? along : across, along_y ? across : along, -depth);
+        const driver::ForceCommand felt = scene(support::tip_at(p));
+        EXPECT_LT((felt.f_T_W - Vector3d(0, 0, kStiffness * depth)).norm(), 1e-9)
+            << i << " along y " << along_y << " order " << order;
+      }
+    }
+  }
+}
+
+TEST(World, ATickInThePlaneOfASeamOfBoxShapesIsLikeAllOthers) {
+  expect_no_seam<EntryFaceBox>();
+  expect_no_seam<WedgeBox>();
 }
 
 TEST(World, SphereOnAPlaneStopsATipThatPressesThePlane) {

@@ -3,8 +3,10 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "thimble/driver/export.h"
@@ -25,6 +27,39 @@
 
 namespace thimble::scene {
 
+/// An optional value that most objects do not have: absent, it takes the memory of a pointer. A
+/// copy has its own value. Used as std::optional, and converts to it.
+template <class T>
+class RareOptional {
+ public:
+  RareOptional() = default;                                                 ///< No value.
+  RareOptional(T value) : value_(std::make_unique<T>(std::move(value))) {}  ///< Takes a value.
+  RareOptional(const RareOptional& other)
+      : value_(other ? std::make_unique<T>(*other) : nullptr) {}  ///< Copies the value.
+  RareOptional(RareOptional&&) noexcept = default;                ///< Moves the value.
+  /// Takes the value of another.
+  RareOptional& operator=(RareOptional other) noexcept {
+    value_ = std::move(other.value_);
+    return *this;
+  }
+  ~RareOptional() = default;
+
+  /// Makes a value with default members, and returns it.
+  T& emplace() { return *(value_ = std::make_unique<T>()); }
+
+  bool has_value() const noexcept { return value_ != nullptr; }    ///< Whether there is a value.
+  explicit operator bool() const noexcept { return has_value(); }  ///< The same.
+  T& operator*() noexcept { return *value_; }                      ///< Value; there must be one.
+  const T& operator*() const noexcept { return *value_; }          ///< The same.
+  T* operator->() noexcept { return value_.get(); }                ///< Its members.
+  const T* operator->() const noexcept { return value_.get(); }    ///< The same.
+  /// Returns a copy.
+  operator std::optional<T>() const { return value_ ? std::optional<T>(*value_) : std::nullopt; }
+
+ private:
+  std::unique_ptr<T> value_;
+};
+
 /// Shape used as an object of a scene instead of a mesh.
 struct THIMBLE_EXPORT SceneShape {
   render::Primitive shape_W;  ///< Shape that is touched.
@@ -37,10 +72,10 @@ struct THIMBLE_EXPORT SceneShape {
 
 /// Material of an object. Empty members are not used.
 struct SceneBody {
-  std::optional<render::DentSettings> dent;  ///< Denting of the surface under the cursor.
+  RareOptional<render::DentSettings> dent;  ///< Denting of the surface under the cursor.
   /// Deformation of the base shape: permanent, or snapping between shapes.
   render::ShapeChoice shape;
-  std::optional<render::MotionChoice> motion;  ///< Motion of the object as a rigid body.
+  RareOptional<render::MotionChoice> motion;  ///< Motion of the object as a rigid body.
 };
 
 /// Object of a scene: a mesh, a shape or a field, with its place and feel.
@@ -65,9 +100,9 @@ struct THIMBLE_EXPORT SceneObject {
   double stiffness = 0;  ///< Stiffness, N/m; with a `stiffness_map` the largest one.
   double damping = 0;    ///< Damping, N s/m.
   /// Factor of `stiffness` over the surface, from 0 to 1.
-  std::optional<render::MapChoice> stiffness_map;
+  RareOptional<render::MapChoice> stiffness_map;
   /// Factor of the coefficients of friction over the surface.
-  std::optional<render::MapChoice> friction_map;
+  RareOptional<render::MapChoice> friction_map;
   /// How the surface is found, tracked and rendered. If `tracker_named` is false and `tracker` is
   /// kEdgePlanes, `SceneObjects::build` chooses the tracker from the mesh (render::choose_tracker).
   render::ContactChoice contact;
@@ -78,7 +113,8 @@ struct THIMBLE_EXPORT SceneObject {
   SceneBody body;  ///< Material.
   /// Bounds of the surface response, used if the object moves.
   render::BodyCoupling coupling;
-  render::CollisionChoice collision;  ///< How it meets bodies.
+  /// How it meets bodies; empty: with the default settings.
+  RareOptional<render::CollisionChoice> collision;
 
   /// Returns whether texture coordinates or vertex colours of the mesh file are used. Real-time:
   /// never from the servo thread.

@@ -16,6 +16,7 @@
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::render {
+struct MapPicture;
 class PagedSurface;
 class SharedBody;
 }  // namespace thimble::render
@@ -78,6 +79,10 @@ class THIMBLE_EXPORT SceneObjects {
   /// Returns the offsets of an object in `mesh_W`.
   const MeshPlace& place(std::size_t object) const;
 
+  /// Returns the map of an object, sampled for drawing; empty if it has none. `scene` is that of
+  /// `build`.
+  std::optional<render::MapPicture> map_picture(const Scene& scene, std::size_t object) const;
+
   /// Returns the current mesh of one object, moved and deformed (W, m). If `object` is negative,
   /// returns all objects as one mesh. Not while the servo runs.
   render::TriangleMesh mesh_now(int object = -1) const;
@@ -104,6 +109,9 @@ class THIMBLE_EXPORT SceneObjects {
   void serve_pages() noexcept;
   /// Returns the disk paging counters of all objects; empty if no object is paged.
   std::optional<render::PagingCounters> paging() const;
+  /// Fails if pages of a page file could not be read; the error names each such file and the fix.
+  /// `scene` is that of `build`. Real-time: never from the servo thread.
+  driver::Result<void> check_pages(const Scene& scene) const;
 
  private:
   using Touches = std::vector<std::vector<std::unique_ptr<render::ObjectTouch>>>;

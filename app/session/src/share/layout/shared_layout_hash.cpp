@@ -15,10 +15,11 @@ THIMBLE_LAYOUT(thimble::session::SharedArm, name, device, in_scene, shape, unuse
 THIMBLE_LAYOUT(thimble::session::SharedHead, ready, layout, total_bytes, hash, pid, began_ns,
                period_ns, force_max, tip_radius, wall_clock, hand_by_mouse, paced, restarts,
                hold_by_key, unused, scene, scene_file, arm_count, arms, objects, knobs, vertices,
-               triangles, field, shaped, splits, ring)
-THIMBLE_LAYOUT(thimble::session::SharedObject, name, kind, colour, moves, dents, shaped, unused,
+               triangles, map_values, field, shaped, splits, ring)
+THIMBLE_LAYOUT(thimble::session::SharedObject, name, kind, colour, moves, dents, shaped, map_parts,
                first_vertex, vertex_count, first_triangle, triangle_count, first_shaped,
-               first_split, max_splits, crease_angle, texture, friction)
+               first_split, max_splits, crease_angle, texture, friction, map_quantity, map_unit,
+               map_min, map_max, first_map_value)
 THIMBLE_LAYOUT(thimble::session::SharedFieldSample, p_W, f_W)
 THIMBLE_LAYOUT(thimble::session::SharedKnob, name, unit, min, max, initial)
 THIMBLE_LAYOUT(thimble::session::SharedSplit, ready, kept, lost, triangles)
