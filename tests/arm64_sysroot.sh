@@ -9,7 +9,7 @@ root=$(cd "$1" && pwd)
 packages=(
   libc6-dev libstdc++-12-dev
   libeigen3-dev libusb-1.0-0-dev libhidapi-dev libboost-dev libassimp-dev zlib1g-dev libpng-dev libyaml-cpp-dev
-  nlohmann-json3-dev libhdf5-dev libsqlite3-dev libfmt-dev libspdlog-dev libcli11-dev libepoxy-dev libegl-dev
+  nlohmann-json3-dev libhdf5-dev libsqlite3-dev libbullet-dev libfmt-dev libspdlog-dev libcli11-dev libepoxy-dev libegl-dev
   libgl-dev libglfw3-dev libimgui-dev libasound2-dev libgtest-dev libbenchmark-dev libmpfr-dev libsimde-dev
 )
 [ "$(cat "$root/packages" 2>/dev/null)" != "${packages[*]}" ] || exit 0

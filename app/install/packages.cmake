@@ -71,7 +71,7 @@ set(CPACK_COMPONENT_UDEV_GROUP program)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_SOURCE_DIR}/postinst")  # udev reads the rules again
 
 string(CONCAT development "${same_version}, libeigen3-dev, libusb-1.0-0-dev, libhidapi-dev, libassimp-dev, zlib1g-dev, libpng-dev, "
-    "libfmt-dev, libyaml-cpp-dev, libhdf5-dev, libsqlite3-dev, libspdlog-dev, pkg-config")
+    "libfmt-dev, libyaml-cpp-dev, libhdf5-dev, libsqlite3-dev, libbullet-dev, libspdlog-dev, pkg-config")
 thimble_package(libthimble-dev COMPONENT dev SECTION libdevel DEPENDS "${development}" DESCRIPTION
 "libraries and headers to build on Thimble
 The driver of 3-DOF force-feedback arms, the simulated arm, the haptic

@@ -23,7 +23,9 @@ namespace {
 /// Returns a scene with one object of each kind, one effect of each and one field of each.
 std::string scene_of_everything() {
   std::string text = "name: keys\ndescription: every kind of object\narm: keys.yaml\nobjects:\n";
-  text += "  - {name: mesh, mesh: keys.off, contact: {}, body: {}, effects: [";
+  text +=
+      "  - {name: mesh, mesh: keys.off, contact: {}, body: {}, collision: {shape: pieces}, "
+      "effects: [";
   for (const render::EffectKind& kind : render::effect_table()) {
     text += fmt::format("{}{{{}: {}}}", text.ends_with('[') ? "" : ", ", kind.group, kind.name);
   }
@@ -33,6 +35,10 @@ std::string scene_of_everything() {
   }
   for (const render::FieldKind& kind : render::field_table()) {
     text += fmt::format("  - {{name: field_{}, field: {}}}\n", kind.name, kind.name);
+  }
+  text += "joints:\n";
+  for (const char* kind : {"hinge", "spring"}) {
+    text += fmt::format("  - {{object: mesh, kind: {}}}\n", kind);
   }
   return text + "hand: {path: [{t: 0, at: [0, 0, 0]}, {t: 1, on: mesh, near: [0, 0, 0]}]}\n";
 }

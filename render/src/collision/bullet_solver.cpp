@@ -224,7 +224,7 @@ BulletSolver::BulletSolver(const SolverPlan& plan, std::span<const SolverState> 
       part_(plan.step / static_cast<double>(substeps_)) {
   set_pair_rules();
   btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
-  // Round bodies get up to three points in one step [Bullet: its own number for bodies on planes],
+  // Round bodies get up to three points in one step [Bullet],
   // spheres only one.
   configuration_.setConvexConvexMultipointIterations(3, 3);
   world_.setGravity({0, 0, 0});
@@ -556,7 +556,7 @@ void BulletSolver::rebound(std::span<const SolverState> bodies) noexcept {
     }
   }
   if (kinetic_energy() <= most) return;
-  // Several contacts with friction may gain energy together [Newton's restitution]. The energy is a
+  // Several contacts with friction may gain energy together. The energy is a
   // quadratic function of the share; two of its values and the one in the middle determine it.
   const double all = kinetic_energy();
   push_apart(0.5);

@@ -67,6 +67,10 @@ const std::vector<KeyRelation>& relations() {
       {"arms[].hand.path[]", Relation::kSecondToo, {"on", "near"}},
       {"arms[].hand.path[]", Relation::kSecondToo, {"near", "on"}},
       {"arms[].hand.path[]", Relation::kSecondToo, {"press", "on"}},
+      {"joints[]", Relation::kSecondToo, {"min", "max"}},
+      {"joints[]", Relation::kSecondToo, {"max", "min"}},
+      {"joints[]", Relation::kSecondToo, {"speed", "motor_max"}},
+      {"joints[]", Relation::kSecondToo, {"motor_max", "speed"}},
       {"joints", Relation::kSecondToo, {"continuous_current", "thermal_time_constant"}},
       {"joints", Relation::kSecondToo, {"thermal_time_constant", "continuous_current"}},
   };

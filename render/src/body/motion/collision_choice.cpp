@@ -12,10 +12,8 @@ namespace {
 constexpr double kFrictionMax = 10;
 constexpr double kPiecesMax = 64;
 constexpr double kPlaceMax = 2;        // m
-constexpr double kTravelMax = 2;       // m
-constexpr double kTurnMax = 3.1;       // rad; a hinge with limits turns by less than half a turn
-constexpr double kSpeedMax = 10;       // m/s
-constexpr double kTurnSpeedMax = 100;  // rad/s
+constexpr double kTravelMax = 3.1;     // rad, m; a hinge with limits turns by less than half a turn
+constexpr double kSpeedMax = 100;      // rad/s, m/s
 constexpr double kForceMax = 1e4;      // N, N m
 constexpr double kStiffnessMax = 1e5;  // N/m
 constexpr double kDampingMax = 1e3;    // N s/m
@@ -49,34 +47,8 @@ void JointChoice::read(SettingsReader& reader) {
   kind = static_cast<JointKind>(chosen);
   const NumberLimits place{.unit = "m", .min = -kPlaceMax, .max = kPlaceMax, .required = true};
   reader.vector("at", p_W, place);
-  const bool travels = kind == JointKind::kHinge || kind == JointKind::kSlider;
-  const bool turns = kind == JointKind::kHinge;
-  if (travels) {
-    reader.vector("axis", axis_W, {.unit = "", .min = -1, .max = 1, .required = true});
-    if (!(axis_W.norm() > 1e-6)) reader.reject("axis", "must not be zero");
-    if (reader.has("min") || reader.has("max")) {
-      const double most = turns ? kTurnMax : kTravelMax;
-      const std::string_view unit = turns ? "rad" : "m";
-      double least = 0, largest = 0;
-      reader.number("min", least, {.unit = unit, .min = -most, .max = most, .required = true});
-      reader.number("max", largest, {.unit = unit, .min = -most, .max = most, .required = true});
-      if (least > 0 || largest < 0) {
-        reader.reject("min", "the first place, 0, must be between min and max");
-      }
-      limits.emplace(least, largest);
-    }
-    if (reader.has("speed")) {
-      const double most = turns ? kTurnSpeedMax : kSpeedMax;
-      speed = 0;
-      reader.number("speed", *speed, {.unit = turns ? "rad/s" : "m/s", .min = -most, .max = most});
-      reader.number("motor_max", motor_max,
-                    {.unit = turns ? "N m" : "N", .min = 1e-6, .max = kForceMax, .required = true});
-      reader.explain_unused("friction", "cannot be combined with speed");
-    } else {
-      reader.number("friction", friction,
-                    {.unit = turns ? "N m" : "N", .min = 0, .max = kForceMax});
-      reader.explain_unused("motor_max", "needs speed");
-    }
+  if (kind == JointKind::kHinge || kind == JointKind::kSlider) {
+    read_travel(reader);
   } else {
     for (const char* key : {"axis", "min", "max", "friction", "speed", "motor_max"}) {
       reader.explain_unused(key, "needs kind: hinge or kind: slider");
@@ -95,6 +67,33 @@ void JointChoice::read(SettingsReader& reader) {
     for (const char* key : {"to", "stiffness", "damping", "length"}) {
       reader.explain_unused(key, "needs kind: spring");
     }
+  }
+}
+
+// Settings of a hinge (rad, N m) or a slider (m, N).
+void JointChoice::read_travel(SettingsReader& reader) {
+  reader.vector("axis", axis_W, {.unit = "", .min = -1, .max = 1, .required = true});
+  if (!(axis_W.norm() > 1e-6)) reader.reject("axis", "must not be zero");
+  if (reader.has("min") || reader.has("max")) {
+    const NumberLimits travel{
+        .unit = "rad or m", .min = -kTravelMax, .max = kTravelMax, .required = true};
+    double least = 0, largest = 0;
+    reader.number("min", least, travel);
+    reader.number("max", largest, travel);
+    if (least > 0 || largest < 0) {
+      reader.reject("min", "the first place, 0, must be between min and max");
+    }
+    limits.emplace(least, largest);
+  }
+  if (reader.has("speed")) {
+    speed = 0;
+    reader.number("speed", *speed, {.unit = "rad/s or m/s", .min = -kSpeedMax, .max = kSpeedMax});
+    reader.number("motor_max", motor_max,
+                  {.unit = "N m or N", .min = 1e-6, .max = kForceMax, .required = true});
+    reader.explain_unused("friction", "cannot be combined with speed");
+  } else {
+    reader.number("friction", friction, {.unit = "N m or N", .min = 0, .max = kForceMax});
+    reader.explain_unused("motor_max", "needs speed");
   }
 }
 

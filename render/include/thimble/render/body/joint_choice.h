@@ -38,6 +38,9 @@ struct THIMBLE_EXPORT JointChoice {
 
   /// Reads the settings from a scene. Real-time: never from the servo thread.
   void read(SettingsReader& reader);
+
+ private:
+  void read_travel(SettingsReader& reader);
 };
 
 }  // namespace thimble::render
