@@ -277,11 +277,13 @@ void ContactWorld::move(const Vector3d& p_WT) noexcept {
       rounds = {};
       continue;
     }
+    bool agreeing = true;
     if (active_count_ == 0) {
       push_ = {};
     } else {
       push_ = push(p_WT);
-      if (active_count_ > 1 && !agrees(p_WT, push_) && ++agreed < kAgreeMax) {
+      agreeing = active_count_ == 1 || agrees(p_WT, push_);
+      if (!agreeing && ++agreed < kAgreeMax) {
         rounds.add(push_.out.d);
         continue;
       }
@@ -291,6 +293,8 @@ void ContactWorld::move(const Vector3d& p_WT) noexcept {
       agreed = 0;
       continue;
     }
+    // Planes of solids that do not agree may lead into one of them.
+    if (!agreeing && inside_active()) break;
     p_WQ_ = reached_;
     if (!ghosts_.empty()) forget_left();
     return;
@@ -481,6 +485,16 @@ bool ContactWorld::inside_ended() const noexcept {
   for (std::size_t i = 0; i < active_count_; ++i) {
     const WorldSolid& one = solid(active_[i].solid);
     if (active_[i].ended && one.follows_closely() && one.inside(reached_)) return true;
+  }
+  return false;
+}
+
+// Returns whether the proxy is inside a solid that holds it. Only where the tracker's surface is
+// that of the solid.
+bool ContactWorld::inside_active() const noexcept {
+  for (std::size_t i = 0; i < active_count_; ++i) {
+    const WorldSolid& one = solid(active_[i].solid);
+    if (one.follows_closely() && one.inside(reached_)) return true;
   }
   return false;
 }
