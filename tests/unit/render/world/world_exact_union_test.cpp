@@ -171,7 +171,9 @@ void expect_alike(bool on_lattice, int scenes, int ticks, double proxy_bound, do
       "minimum in %d ticks of %d scenes; %d unsettled\n",
       scenes, solids, triangles, exact, redrawn.solids, redrawn.scenes, scenes * ticks, all.several,
       all.proxy_off, all.force_off, all.parted, all.scenes_parted, all.unsettled);
-  if (on_lattice) EXPECT_EQ(exact, scenes);
+  if (on_lattice) {
+    EXPECT_EQ(exact, scenes);
+  }
   EXPECT_GT(all.several, scenes * 50);
   EXPECT_EQ(all.inside, 0);
   EXPECT_EQ(all.no_minimum, 0);
