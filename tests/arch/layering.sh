@@ -57,6 +57,7 @@ layers='
   multirate: touch
   world: state settings touch mesh compact_mesh search track field
   ball: state settings touch mesh search track field world
+  collision: state settings touch mesh field body build
 '
 upward=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' render | awk -v layers="$layers" '
   function layer(path) {

@@ -99,7 +99,7 @@ class ForesightedDispatcher final : public btCollisionDispatcher {
   double step_ = 1e-3;
 };
 
-/// Bullet's world, which tells the solver of contacts before their impulses are computed.
+/// Bullet's world, which reports contacts to the solver before their impulses are computed.
 class ObservedWorld final : public btDiscreteDynamicsWorld {
  public:
   using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
@@ -360,7 +360,8 @@ void BulletSolver::add_joint(const SolverJoint& joint, std::span<const SolverSta
     const btTransform at_W = transform_of(R_WJ, scale_ * choice.p_W);
     if (i < 0) return at_W;
     const SolverState& state = first[static_cast<std::size_t>(i)];
-    return btTransform(to_bullet(state.q_WB), length(state.p_WC)).inverse() * at_W;
+
+    return btTransform(to_bullet(state.q_WB), length(state.p_WC)).inverseTimes(at_W);
   };
   for (const int i : {joint.a, joint.b}) {
     if (i >= 0) own_[static_cast<std::size_t>(i)].jointed = true;

@@ -1,5 +1,6 @@
 #include "collision/collision_world.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>

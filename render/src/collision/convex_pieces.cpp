@@ -2,6 +2,7 @@
 
 #include <LinearMath/btConvexHullComputer.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -291,6 +291,8 @@ void ContactWorld::move(const Vector3d& p_WT) noexcept {
       agreed = 0;
       continue;
     }
+    // On its way over the planes of several solids it may have cut into one of them.
+    if (active_count_ > 1 && inside_active()) break;
     p_WQ_ = reached_;
     if (!ghosts_.empty()) forget_left();
     return;
@@ -485,6 +487,16 @@ bool ContactWorld::inside_ended() const noexcept {
   return false;
 }
 
+// Returns whether the proxy is inside a solid that holds it. Only where the tracker's surface is
+// that of the solid.
+bool ContactWorld::inside_active() const noexcept {
+  for (std::size_t i = 0; i < active_count_; ++i) {
+    const WorldSolid& one = solid(active_[i].solid);
+    if (one.follows_closely() && one.inside(reached_)) return true;
+  }
+  return false;
+}
+
 void ContactWorld::drop_ended() noexcept {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < active_count_; ++i) {
@@ -587,8 +599,14 @@ driver::ForceCommand ContactWorld::feel_several(const driver::DeviceState& state
   double stiffest = 0, lambda_sum = 0, squares = 0, weighted = 0;
   std::array<double, kPlanesMax> plane_stiffness_before{};
   bool turned = false;
+  // In a tick that has not settled, the faces to which the proxy was put back may be in front of
+  // the tip. What the filter leaves of the force is then felt on one solid.
+  std::array<double, kActiveMax> share = push_.lambda;
+  const auto presses = [](double lambda) { return lambda > 0; };
+  const auto end = share.begin() + static_cast<std::ptrdiff_t>(active_count_);
+  if (std::none_of(share.begin(), end, presses)) share[0] = 1;
   for (std::size_t i = 0; i < active_count_; ++i) {
-    const double lambda = push_.lambda[i];
+    const double lambda = share[i];
     if (!(lambda > 0)) continue;
     stiffness[i] = solid(active_[i].solid).stiffness();
     stiffest = std::max(stiffest, stiffness[i]);
@@ -639,7 +657,8 @@ driver::ForceCommand ContactWorld::feel_several(const driver::DeviceState& state
   part.fill(Vector3d::Zero());
   Vector3d rest = f_W;
   for (std::size_t k = 0; k < list.count; ++k) {
-    const Vector3d one = std::max(shared.part[k], 0.0) * list.plane[k].n;
+    if (!(shared.part[k] > 0)) continue;
+    const Vector3d one = shared.part[k] * list.plane[k].n;
     part[list.owner[k]] += one;
     rest -= one;
   }
@@ -647,8 +666,8 @@ driver::ForceCommand ContactWorld::feel_several(const driver::DeviceState& state
   driver::ForceCommand command;
   double deepest = -1;
   for (std::size_t i = 0; i < active_count_; ++i) {
-    if (!(push_.lambda[i] > 0) || !(stiffness[i] > 0)) continue;
-    if (!exact) part[i] += push_.lambda[i] / lambda_sum * rest;
+    if (!(share[i] > 0) || !(stiffness[i] > 0)) continue;
+    if (!exact) part[i] += share[i] / lambda_sum * rest;
     ContactState contact = active_[i].found;
     contact.n_W = push_.n[i];
     const double size_i = part[i].norm();
@@ -661,8 +680,8 @@ driver::ForceCommand ContactWorld::feel_several(const driver::DeviceState& state
     command.f_T_W += one.f_T_W;
     command.stored += one.stored;
     command.f_program_W += one.f_program_W;
-    if (!one.touch.in_contact || !(push_.lambda[i] > deepest)) continue;
-    deepest = push_.lambda[i];
+    if (!one.touch.in_contact || !(share[i] > deepest)) continue;
+    deepest = share[i];
     command.touch = one.touch;
     command.touch.object = members_[static_cast<std::size_t>(active_[i].solid)].object;
   }

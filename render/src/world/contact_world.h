@@ -116,6 +116,7 @@ class THIMBLE_EXPORT ContactWorld {
   bool agrees(const Eigen::Vector3d& p_WT, const Push& push) const noexcept;
   void revive_ended() noexcept;
   bool inside_ended() const noexcept;
+  bool inside_active() const noexcept;
   void drop_ended() noexcept;
   Planes planes() const noexcept;
   Push push(const Eigen::Vector3d& p_WT) const noexcept;

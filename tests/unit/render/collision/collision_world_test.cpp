@@ -156,7 +156,7 @@ TEST(CollisionWorld, AStackOfTenBlocksStands) {
   EXPECT_LT(drift, 1e-4);
 }
 
-TEST(CollisionWorld, NoBodyPassesThroughAnotherAtTwoMetresPerSecond) {
+TEST(CollisionWorld, NoBodyPassesThroughAnotherAtTwoMPerS) {
   // Plates 5 mm thick, and a ball of 5 mm; the fixed one is touched as box, hull and mesh.
   for (const CollisionShape shape :
        {CollisionShape::kOwn, CollisionShape::kHull, CollisionShape::kMesh}) {
@@ -418,7 +418,7 @@ TEST(CollisionJoints, ABallJointHoldsItsPointAndAFixedOneAll) {
   }
 }
 
-TEST(CollisionJoints, ASpringOscillatesWithItsFrequencyAndKeepsMomentum) {
+TEST(CollisionJoints, ASpringHasItsFrequencyAndKeepsMomentum) {
   MeetingBodies bodies;
   MotionChoice choice = MeetingBodies::rigid(0.1);
   const int a = bodies.add_sphere({0, 0, 0}, 0.01, choice);
