@@ -26,8 +26,8 @@ struct SurfaceTurns {
   /// of the mesh's box. [chosen: a ball has 2; an eighth of it leaves room for the uneven triangles
   /// of scans]
   static constexpr double kFlatCurvature = 0.25;
-  /// Error of a coordinate, relative to the longest side of the mesh's box: a step of single
-  /// precision [IEEE 754, binary32] at its end.
+  /// Error of a coordinate, relative to the longest side of the mesh's box. [chosen: 2^-24, the
+  /// largest rounding of numbers below 1 in single precision, for files with 24 bits]
   static constexpr double kRounding = 6e-8;
   /// A triangle with a smooth edge is uneven if its neighbour there has less than this share of
   /// its area. A smooth surface would rise above the whole triangle although only its rim is bent.
