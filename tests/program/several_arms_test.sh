@@ -31,7 +31,7 @@ done
 
 for command in tune bench; do
   "$thimble" $command --help >/dev/null 2>&1 || continue # in a package of its own
-  expect_error 2 'second.yaml: (left, right)' "$thimble" $command second.yaml
+  expect_error 2 'second.yaml: left arms' "$thimble" $command second.yaml
 done
 sed '/arm: vintage/s/$/\n    tool: {radius: 0.003}/' second.yaml >tool.yaml
 expect_error 2 'tool.yaml:#: tool arms' "$thimble" run tool.yaml
