@@ -107,7 +107,7 @@ std::vector<Case> cases() {
   };
   for (const auto& [name, tracker, reason] :
        {std::tuple{"elephant.off", kPacked, "smooth: 100 %"},
-        std::tuple{"fandisk.off", kPacked, "smooth: 54 %"},
+        std::tuple{"fandisk.off", kPacked, "smooth: 56 %"},
         std::tuple{"cube-meshed.off", kEdgePlanes, "faceted: 100 %"},
         std::tuple{"handle.off", kEdgePlanes, "faceted: large triangles"},
         std::tuple{"lion.off", kEdgePlanes, "not closed"}}) {
@@ -220,6 +220,37 @@ TEST(ChooseTracker, FineBallsAreSmoothAndFineDiceFaceted) {
     EXPECT_EQ(die.contact.tracker, TrackerChoice::kEdgePlanes) << n << ": " << die.reason;
     EXPECT_EQ(die.reason, "faceted: 100 % of the area is flat") << n;
   }
+}
+
+TEST(ChooseTracker, RoundingOfABarOfNarrowStripsIsFlat) {
+  // A tilted bar of narrow strips along its sides, with coordinates in single precision.
+  constexpr int kStrips = 2000;  // of each side
+  constexpr double kHalf = 0.02;
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).matrix();
+  TriangleMesh mesh;
+  const auto add = [&](double x, double y, double z) {
+    mesh.vertices.push_back((R * Vector3d(x, y, z)).cast<float>().cast<double>());
+    return static_cast<std::int32_t>(mesh.vertices.size() - 1);
+  };
+  const std::int32_t bottom = add(0, 0, -kHalf), top = add(0, 0, kHalf);
+  std::vector<std::array<std::int32_t, 2>> rim;
+  for (int side = 0; side < 4; ++side) {
+    for (int i = 0; i < kStrips; ++i) {
+      const double along = kHalf * (2.0 * i / kStrips - 1);
+      const double x = side == 0 ? along : side == 1 ? kHalf : side == 2 ? -along : -kHalf;
+      const double y = side == 0 ? -kHalf : side == 1 ? along : side == 2 ? kHalf : -along;
+      rim.push_back({add(x, y, -kHalf), add(x, y, kHalf)});
+    }
+  }
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    const auto& [a, b] = rim[i];
+    const auto& [c, d] = rim[(i + 1) % rim.size()];
+    for (const auto& corners : {std::array{a, c, d}, {a, d, b}, {bottom, c, a}, {top, b, d}}) {
+      mesh.triangles.push_back(corners);
+    }
+  }
+  const ChosenTracker chosen = choose_tracker(mesh);
+  EXPECT_EQ(chosen.contact.tracker, TrackerChoice::kEdgePlanes) << chosen.reason;
 }
 
 TEST(ChooseTracker, SlightCurvatureOfAFinePlateIsFlat) {
