@@ -148,10 +148,14 @@ bool print_reason(const session::Recording& recording, const std::string& scene)
     session::print(stdout, "Reason: {}\n", repeatable.error().message);
     return true;
   }
-  session::print(
-      stdout,
-      "Scene, options, arm and program are those of the recording, so all forces should be "
-      "identical. Please report this error with the recording.\n");
+  if (const auto unhashed = session::unhashed_files(recording, scene); !unhashed.empty()) {
+    session::print(stdout, "Reason: {}\n", unhashed);
+    return true;
+  }
+  session::print(stdout,
+                 "Scene, options, arm, other files and program are those of the recording, so all "
+                 "forces should be "
+                 "identical. Please report this error with the recording.\n");
   return false;
 }
 

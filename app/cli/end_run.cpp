@@ -24,10 +24,9 @@ void print_summaries(const session::Session& session, const driver::RealTimeGran
 
 ExitCode end_of(const session::Session& session, bool by_viewer) {
   ExitCode code = kExitDone;
-  for (std::size_t arm = session.arms(); arm-- > 0;) {
+  for (std::size_t arm = 0; arm < session.arms(); ++arm) {
     const session::RunFigures figures = session.figures({}, arm);
-    const ExitCode own = exit_code_of(figures.end, figures.fault, by_viewer);
-    if (code == kExitDone || figures.fault != driver::Fault::kNone) code = own;
+    code = more_serious(code, exit_code_of(figures.end, figures.fault, by_viewer));
   }
   return code;
 }

@@ -32,4 +32,14 @@ constexpr ExitCode exit_code_of(driver::ServoEnd end, driver::Fault fault,
   return kExitTrouble;
 }
 
+/// Returns the exit code of a run of two arms that ended with these codes of `exit_code_of`. A
+/// fault counts before an interruption, because the fault of one arm also stops the loops of the
+/// others.
+constexpr ExitCode more_serious(ExitCode one, ExitCode other) noexcept {
+  for (const ExitCode code : {kExitFault, kExitTrouble, kExitInterrupted}) {
+    if (one == code || other == code) return code;
+  }
+  return kExitDone;
+}
+
 }  // namespace thimble::cli

@@ -81,6 +81,7 @@ py::dict info_of(const session::RecordingInfo& info) {
   info_dict["arm_in_scene"] = info.arm_in_scene;
   info_dict["options"] = info.options;
   info_dict["inside_at_start"] = info.inside_at_start;
+  info_dict["file_hashes"] = info.file_hashes;
   return info_dict;
 }
 

@@ -76,14 +76,15 @@ double max_chord() {
 
 class Counter {
  public:
-  Counter(std::vector<Face>& faces, SurfaceTurns& turns) : faces_(faces), turns_(turns) {}
+  Counter(const TriangleMesh& mesh, std::vector<Face>& faces, SurfaceTurns& turns)
+      : mesh_(mesh), side_(std::sqrt(unit_area(mesh))), faces_(faces), turns_(turns) {}
 
-  // Adds the edge of two triangles.
-  void add(std::size_t one, std::size_t other) {
+  // Adds the edge of two triangles between the vertices `from` and `to`.
+  void add(std::size_t one, std::size_t other, std::int32_t from, std::int32_t to) {
     Face& a = faces_[one];
     Face& b = faces_[other];
     const float square = (a.n - b.n).squaredNorm();
-    if (square < kFlatSquare) return;
+    if (square < kFlatSquare && is_flat(a, b, from, to, std::sqrt(double{square}))) return;
     const double at_edge = (double{a.area} + double{b.area}) / 3;
     const float place = std::sqrt(square) * per_chord_;
     if (!(place < static_cast<float>(SurfaceTurns::kClasses))) {
@@ -103,6 +104,25 @@ class Counter {
   static constexpr auto kFlatSquare =
       static_cast<float>(SurfaceTurns::kFlatChord * SurfaceTurns::kFlatChord);
 
+  // Returns whether an edge with a small chord is flat. The triangles of a fine mesh turn little
+  // however much its surface curves.
+  bool is_flat(const Face& a, const Face& b, std::int32_t from, std::int32_t to,
+               double chord) const {
+    const auto at = [this](std::int32_t vertex) -> const Vector3d& {
+      return mesh_.vertices[static_cast<std::size_t>(vertex)];
+    };
+    const double length = (at(to) - at(from)).norm() / side_;
+    const double height_a = 2 * double{a.area} / length, height_b = 2 * double{b.area} / length;
+    // The middle of a triangle is a third of its height above the edge. A vertex that is off by the
+    // rounding tilts its triangle by that per height.
+    if (chord < SurfaceTurns::kFlatCurvature * (height_a + height_b) / 3) return true;
+    return chord < kTilts * SurfaceTurns::kRounding * (1 / height_a + 1 / height_b);
+  }
+  // The edge and the vertex of a triangle may be off, in opposite directions.
+  static constexpr double kTilts = 2;
+
+  const TriangleMesh& mesh_;
+  double side_;
   std::vector<Face>& faces_;
   SurfaceTurns& turns_;
   float per_chord_ = static_cast<float>(static_cast<double>(SurfaceTurns::kClasses) / max_chord());
@@ -182,7 +202,7 @@ SurfaceTurns surface_turns(const TriangleMesh& mesh) {
   SurfaceTurns turns;
   std::vector<Face> faces = faces_of(mesh);
   const Sides sides(mesh, faces);
-  Counter counter(faces, turns);
+  Counter counter(mesh, faces, turns);
   std::size_t found = 0, sought = 0;
   for_each_side(mesh, faces, [&](std::int32_t from, std::int32_t to, std::size_t t) {
     if (from < to) return;
@@ -190,7 +210,7 @@ SurfaceTurns surface_turns(const TriangleMesh& mesh) {
     const std::int32_t other = sides.find(to, from);
     if (other < 0) return;
     ++found;
-    counter.add(static_cast<std::size_t>(other), t);
+    counter.add(static_cast<std::size_t>(other), t, from, to);
   });
   turns.closed = found > 0 && found == sought && sought == sides.size();
   double area = 0;

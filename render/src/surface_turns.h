@@ -17,10 +17,18 @@ struct SurfaceTurns {
   static constexpr std::size_t kClasses = 48;  ///< Number of classes.
   /// Turn of the last class, rad: 43 degrees, the default crease angle of the tracker `compact`.
   static constexpr double kMax = 0.75;
-  /// A smaller chord is a flat edge: 0.2 degrees. [chosen: coordinates in single precision tilt a
-  /// triangle of a thousandth of the mesh's size by 0.006 degrees, and triangles of a ball turn by
-  /// 0.2 degrees from 330,000 triangles on, where flat and smooth contact feel the same]
+  /// An edge with a smaller chord, 0.2 degrees, is flat if its curvature is below `kFlatCurvature`
+  /// or if rounding can explain the chord. [chosen: coordinates in single precision tilt a triangle
+  /// of a thousandth of the mesh's size by 0.006 degrees; the triangles of a ball turn by less from
+  /// 330,000 triangles on]
   static constexpr double kFlatChord = 0.0035;
+  /// Curvature of a flat edge: chord per distance of the middles of its triangles, per longest side
+  /// of the mesh's box. [chosen: a ball has 2; an eighth of it leaves room for the uneven triangles
+  /// of scans]
+  static constexpr double kFlatCurvature = 0.25;
+  /// Error of a coordinate, relative to the longest side of the mesh's box. [chosen: 2^-24, the
+  /// largest rounding of numbers below 1 in single precision, for files with 24 bits]
+  static constexpr double kRounding = 6e-8;
   /// A triangle with a smooth edge is uneven if its neighbour there has less than this share of
   /// its area. A smooth surface would rise above the whole triangle although only its rim is bent.
   static constexpr double kEven = 0.125;

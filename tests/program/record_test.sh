@@ -25,6 +25,25 @@ wanted() { awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^f_wanted_W/) 
 expect 0 '^[1-9]' bash -c "$(declare -f wanted); diff <(wanted run.csv) <(wanted softer.csv) | wc -l"
 expect_error 2 'softer.yaml' "$thimble" replay run.h5 --scene softer.yaml --verify
 
+# A changed file of the scene is found by its contents, and named.
+mkdir -p tissue
+cp "$source_dir"/app/scenes/tissue* tissue/
+expect 0 '' "$thimble" run tissue/tissue.yaml --duration 1 --record tissue.h5
+touch tissue/tissue.obj
+expect_words 0 'tissue.h5 1000' "$thimble" replay tissue.h5 --verify
+for changed in tissue_lumps.png tissue_ribs.png tissue.obj; do
+  cp tissue/$changed good
+  case $changed in
+    *.png) cp tissue/tissue_$([ $changed = tissue_lumps.png ] && echo ribs || echo lumps).png tissue/$changed ;;
+    *) sed -i '1i # another first line' tissue/$changed ;;
+  esac
+  expect_error 2 "--verify tissue/$changed" "$thimble" replay tissue.h5 --verify
+  cp good tissue/$changed
+done
+# The files may be moved together.
+mv tissue moved
+expect_words 0 'tissue.h5 1000' "$thimble" replay tissue.h5 --scene moved/tissue.yaml --verify
+
 # A trajectory from another program touches a scene, and its forces are compared.
 printf 't x y z fx fy fz\n0 0 0 20 0 0 0\n1 0 0 5 0 0 1\n2 10 0 5 0 0 1\n' >probe.traj
 rubber=$source_dir/app/scenes/rubber.yaml

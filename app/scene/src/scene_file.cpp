@@ -452,6 +452,7 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
   lift_hands(scene);
   root.finish();
   if (auto done = yaml.finish(); !done) return done.error();
+  scene.inputs = yaml.files();
   if (arm_error) return *arm_error;
   return scene;
 }

@@ -181,8 +181,8 @@ driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::pa
   return session;
 }
 
-driver::Result<std::unique_ptr<Session>> Session::open_like(const Session& other,
-                                                            std::uint64_t seed) {
+driver::Result<std::unique_ptr<Session>> Session::prepare_like(const Session& other,
+                                                               std::uint64_t seed) {
   auto setup = Setup::prepare_like(other.setup(), seed);
   if (!setup) return setup.error();
   std::unique_ptr<Session> session(new Session);
@@ -190,7 +190,17 @@ driver::Result<std::unique_ptr<Session>> Session::open_like(const Session& other
   session->parts_->log = other.parts_->log;
   session->parts_->add_records();
   if (other.parts_->knobs) session->parts_->add_knobs();
-  if (auto opened = session->open_arm(); !opened) return opened.error();
+  return session;
+}
+
+driver::Result<std::unique_ptr<Session>> Session::open_like(const Session& other,
+                                                            std::uint64_t seed) {
+  if (other.setup().real_time()) {
+    return driver::Error{"Session::open_like requires a session with virtual time."};
+  }
+  auto session = prepare_like(other, seed);
+  if (!session) return session;
+  if (auto opened = (*session)->open_arm(); !opened) return opened.error();
   return session;
 }
 

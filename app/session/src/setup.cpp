@@ -76,9 +76,8 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
 }
 
 driver::Result<std::unique_ptr<Setup>> Setup::prepare_like(const Setup& other, std::uint64_t seed) {
-  if (other.plan_.real_time || other.plan_.own_clock) {
-    return driver::Error{
-        "Session::open_like requires a session with virtual time and the built-in clock."};
+  if (other.any_real() || other.plan_.own_clock) {
+    return driver::Error{"A run like another one requires simulated arms and the built-in clock."};
   }
   std::unique_ptr<Setup> setup(new Setup);
   setup->plan_ = other.plan_;
@@ -92,6 +91,7 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare_like(const Setup& other, s
     if (!simulation) return simulation.error();
     setup->arms_[i].simulation = std::move(simulation).value();
   }
+  if (setup->plan_.real_time) setup->objects_->start_loaders();
   return setup;
 }
 
@@ -117,6 +117,7 @@ driver::Result<void> Setup::read(const SessionOptions& options) {
        .several_arms = options.several_arms});
   if (!scene) return scene.error();
   plan_.scene = std::make_shared<scene::Scene>(std::move(scene).value());
+  plan_.inputs = std::make_shared<scene::FileHashes>(plan_.scene->inputs);
   if (auto fits = check_several(options); !fits) return fits;
   plan_.quality_choices = scene::apply_quality(*quality, *plan_.scene, options.budget);
   plan_.choices = {.quality = options.quality,
@@ -420,7 +421,8 @@ RecordingInfo Setup::recording_info(std::size_t arm) const {
           .seed = plan_.seed + arm,
           .arm_in_scene = arm_name(arm),
           .inside_at_start = fmt::format("{}", fmt::join(inside_at_start(arm), ", ")),
-          .options = text_of(plan_.choices)};
+          .options = text_of(plan_.choices),
+          .file_hashes = plan_.inputs->text()};
 }
 
 }  // namespace thimble::session

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "files/file_hashes.h"
 #include "heat_keeper.h"
 #include "recording/run_choices.h"
 #include "sleep_lock.h"
@@ -34,7 +35,8 @@ struct RunPlan {
   std::filesystem::path scene_file;
   /// Scene, shared by similar sessions; changed only while it is read.
   std::shared_ptr<scene::Scene> scene;
-  std::vector<std::string> warnings;  ///< Warnings to show the user, one sentence each.
+  std::shared_ptr<scene::FileHashes> inputs;  ///< Hashes of the scene's inputs.
+  std::vector<std::string> warnings;          ///< Warnings to show the user, one sentence each.
   std::vector<std::string> quality_choices;
   RunChoices choices;
   std::filesystem::path firmware;
@@ -84,7 +86,7 @@ class THIMBLE_EXPORT Setup {
   static driver::Result<std::unique_ptr<Setup>> prepare(const std::filesystem::path& scene,
                                                         const SessionOptions& options);
   /// Does the same for another run of `other` with a new seed. The scene as read before, its meshes
-  /// and the hands' paths are shared. Fails unless `other` uses virtual time and the built-in
+  /// and the hands' paths are shared. Fails if an arm of `other` is real or it uses the caller's
   /// clock. Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<Setup>> prepare_like(const Setup& other,
                                                              std::uint64_t seed);

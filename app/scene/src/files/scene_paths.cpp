@@ -53,6 +53,7 @@ fs::path find_mesh_file(YamlMap& map, const fs::path& folder, const fs::path& me
   if (!is_file(path)) {
     map.refuse("mesh", "expected a file, found none at " + path.lexically_normal().string());
   }
+  map.note_file(path.lexically_normal());
   return path.lexically_normal();
 }
 

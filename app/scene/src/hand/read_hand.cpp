@@ -65,8 +65,9 @@ std::vector<HandWaypoint> read_bag_path(YamlMap& map, const std::filesystem::pat
   const std::size_t axes = map.optional_choice("axes", 0, {"plain", "omni"});
   if (map.has("path")) map.refuse("path", "cannot be used with bag; keep one of them");
   if (text.empty()) return {};
-  auto hand =
-      read_bag_hand((folder / text).lexically_normal(), topic, static_cast<bag::BagAxes>(axes));
+  const std::filesystem::path bag = (folder / text).lexically_normal();
+  map.note_file(bag);
+  auto hand = read_bag_hand(bag, topic, static_cast<bag::BagAxes>(axes));
   if (hand) return std::move(hand).value();
   std::string sentence = hand.error().message;  // becomes part of another sentence
   if (sentence.ends_with('.')) sentence.pop_back();

@@ -59,6 +59,11 @@ driver::Result<std::filesystem::path> file_of(const std::string& text,
 
 driver::Result<SceneArm> read_arm_entry(YamlMap& map, const std::filesystem::path& folder) {
   SceneArm entry;
+  for (const char* key :
+       {"description", "rate", "duration", "seed", "gate", "faults", "objects", "tool"}) {
+    map.explain_unused(
+        key, "applies to the whole scene; move it out of arms, to the top level of the file");
+  }
   entry.name = map.require_string("name");
   // The name becomes part of names of folders and of groups of files.
   const auto plain = [](char c) {
@@ -86,6 +91,12 @@ driver::Result<SceneArm> read_arm_entry(YamlMap& map, const std::filesystem::pat
   return entry;
 }
 
+std::string names_of(const std::vector<SceneArm>& arms) {
+  std::string names;
+  for (const SceneArm& arm : arms) names += (names.empty() ? "" : ", ") + arm.name;
+  return names;
+}
+
 }  // namespace
 
 ArmFile ArmPlace::put(ArmFile arm) const {
@@ -107,6 +118,7 @@ driver::Result<void> read_arms(YamlMap& root, const std::filesystem::path& folde
       root.refuse(key, "cannot be used with arms; each entry of arms has its own");
     }
   }
+  root.explain_unused("at", "is the place of one arm; move it into an entry of arms");
   if (arms.size() == 1) root.refuse("arms", "expected two arms or more; for one use arm and hand");
   if (arms.size() > kArmsMax) {
     root.refuse("arms", fmt::format("expected at most {} arms, found {}", kArmsMax, arms.size()));
@@ -124,9 +136,11 @@ driver::Result<void> read_arms(YamlMap& root, const std::filesystem::path& folde
     read.push_back(std::move(entry).value());
   }
   if (read.size() > 1 && !reading.several_arms) {
-    return driver::Error{
-        fmt::format("{}: the scene has {} arms, but this command supports one; use thimble run.",
-                    scene.file.string(), read.size())};
+    return driver::Error{fmt::format(
+        "{}: the scene has {} arms, but this command supports one. Pass a copy of the scene for "
+        "each arm ({}), in which arm and hand of its entry replace arms. If the entry has at, also "
+        "move the objects and the hand's path into the frame of the arm.",
+        scene.file.string(), read.size(), names_of(read))};
   }
   if (read.size() > 1 && !reading.arm.empty()) {
     return driver::Error{

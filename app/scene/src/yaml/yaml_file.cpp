@@ -74,6 +74,10 @@ void YamlMistakes::warn(int line, const std::string& sentence) {
   warnings_.push_back(in_file(file_name_, line, sentence));
 }
 
+void YamlMistakes::note_file(const std::filesystem::path& file) {
+  if (std::find(files_.begin(), files_.end(), file) == files_.end()) files_.push_back(file);
+}
+
 std::string YamlMistakes::text() const {
   std::string text;
   std::size_t kept = 0, count = 0;

@@ -65,6 +65,12 @@ class YamlMistakes {
   /// Returns the warnings, one sentence each with file and line.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
+  /// Notes a file that a value of the text names, once.
+  void note_file(const std::filesystem::path& file);
+
+  /// Returns the noted files, in the order of the text.
+  const std::vector<std::filesystem::path>& files() const noexcept { return files_; }
+
   /// Returns whether there are no mistakes.
   bool empty() const {
     return flaws_.count == 0 && values_.count == 0 && (checks_ignored_ || checks_.count == 0);
@@ -86,6 +92,7 @@ class YamlMistakes {
   KeyLog* keys_;
   std::vector<TextFlaw> misplaced_;
   std::vector<std::string> warnings_;
+  std::vector<std::filesystem::path> files_;
   Kind flaws_, values_, checks_;
   bool flaws_explain_all_ = false;
   bool checks_ignored_ = false;
@@ -187,6 +194,9 @@ class YamlMap {
   /// Adds an invalid value that only the caller can detect, at the line of `key` (or of this map).
   void refuse(std::string_view key, const std::string& sentence);
 
+  /// Notes a file that a value of this map names, for `YamlFile::files`.
+  void note_file(const std::filesystem::path& file) { mistakes_->note_file(file); }
+
   /// Ignores the failed checks of the whole file; see YamlMistakes::ignore_checks.
   void ignore_checks() { mistakes_->ignore_checks(); }
 
@@ -267,6 +277,9 @@ class THIMBLE_EXPORT YamlFile {
 
   /// Returns the warnings to the user, one sentence each.
   const std::vector<std::string>& warnings() const noexcept { return mistakes_->warnings(); }
+
+  /// Returns the files that its values name (`YamlMap::note_file`), each once.
+  const std::vector<std::filesystem::path>& files() const noexcept { return mistakes_->files(); }
 
  private:
   YamlFile(YamlMap root, std::shared_ptr<YamlMistakes> mistakes)

@@ -36,6 +36,7 @@ void YamlSettings::file(std::string_view key, std::filesystem::path& value) {
   const std::string name = map_.require_string(key);
   if (name.empty()) return;
   value = find_scene_file(folder_, name);
+  map_.note_file(value);
   std::error_code status;
   if (!std::filesystem::is_regular_file(value, status)) {
     map_.refuse(key, "expected a file, found none at " + value.string());

@@ -43,6 +43,7 @@ inline constexpr std::array kRecordingTexts{
     RecordingText{"arm_in_scene", &RecordingInfo::arm_in_scene, true, true},
     RecordingText{"options", &RecordingInfo::options, true},
     RecordingText{"inside_at_start", &RecordingInfo::inside_at_start, true, true},
+    RecordingText{"file_hashes", &RecordingInfo::file_hashes, true},
 };
 
 /// Returns the largest memory, bytes, that reading a recording with `stored` bytes on disk may use.

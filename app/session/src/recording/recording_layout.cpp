@@ -90,6 +90,7 @@ bool write_info(const H5Handle& file, const RecordingInfo& info) {
          (info.options.empty() || write_text(file, "options", info.options)) &&
          (info.inside_at_start.empty() ||
           write_text(file, "inside_at_start", info.inside_at_start)) &&
+         (info.file_hashes.empty() || write_text(file, "file_hashes", info.file_hashes)) &&
          write_text(file, "faults", faults) &&
          write_number(file, "rate", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, info.rate) &&
          write_number(file, "seed", H5T_STD_U64LE, H5T_NATIVE_UINT64, info.seed) &&

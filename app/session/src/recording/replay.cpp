@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "files/file_hashes.h"
 #include "recording/replay_watch.h"
 #include "recording/replayed_law.h"
 #include "recording/run_choices.h"
@@ -93,6 +94,7 @@ Replay begin_replay(const Recording& recording, const scene::Scene& scene,
   info.scene = scene.name;
   info.scene_file = file.string();
   info.scene_text = scene::text_of(file);
+  info.file_hashes = scene::FileHashes(scene.inputs).text();
   info.program = scene::program_name();
   info.device = "replay";
   info.clock = "virtual";
@@ -142,7 +144,8 @@ driver::Result<std::vector<std::size_t>> arms_of(std::span<const Recording> reco
   for (const Recording& one : recordings) {
     const bool same = one.ticks.size() == first.ticks.size() && one.info.rate == first.info.rate &&
                       one.info.scene_text == first.info.scene_text &&
-                      one.info.options == first.info.options;
+                      one.info.options == first.info.options &&
+                      one.info.file_hashes == first.info.file_hashes;
     if (!same || recordings.size() != names.size()) {
       return driver::Error{file.string() + ": the recordings are not from one run of its " +
                            std::to_string(names.size()) + " arms."};
@@ -157,12 +160,13 @@ namespace {
 
 /// Loads the scene of a recording with the options of its run.
 driver::Result<scene::Scene> load_scene_of(const Recording& recording,
-                                           const std::filesystem::path& file,
-                                           const std::string& arm, bool several_arms) {
+                                           const std::filesystem::path& file) {
+  const bool several = !recording.info.arm_in_scene.empty();
   const auto choices = run_choices(recording.info.options);
   if (!choices) return choices.error();
-  auto scene = scene::load_scene(
-      file, {.arm = arm, .rate_factor = choices->rate_factor, .several_arms = several_arms});
+  auto scene = scene::load_scene(file, {.arm = several ? std::string() : recording.info.arm_file,
+                                        .rate_factor = choices->rate_factor,
+                                        .several_arms = several});
   if (!scene) return scene;
   const auto quality = scene::quality_named(choices->quality);
   scene::apply_quality(quality.value_or(scene::Quality::kNormal), *scene, choices->budget);
@@ -183,7 +187,7 @@ driver::Result<Replay> replay_single(const Recording& recording, const std::stri
                                      ReplayWatch* watch) {
   const auto file = scene_of(recording, scene_name);
   if (!file) return file.error();
-  const auto scene = load_scene_of(recording, *file, recording.info.arm_file, false);
+  const auto scene = load_scene_of(recording, *file);
   if (!scene) return scene.error();
   const auto objects = build(*scene, watch);
   if (!objects) return objects.error();
@@ -222,7 +226,7 @@ driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> r
   }
   const auto file = scene_of(recordings.front(), scene_name);
   if (!file) return file.error();
-  const auto scene = load_scene_of(recordings.front(), *file, {}, true);
+  const auto scene = load_scene_of(recordings.front(), *file);
   if (!scene) return scene.error();
   const auto order = arms_of(recordings, *scene, *file);
   if (!order) return order.error();
@@ -249,6 +253,21 @@ driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> r
     if (watch != nullptr) watch->take(replays[order->front()].felt.ticks.back());
   }
   return replays;
+}
+
+std::string unhashed_files(const Recording& recording, const std::string& scene) {
+  if (!recording.info.file_hashes.empty()) return {};
+  const auto file = scene_of(recording, scene);
+  if (!file) return {};
+  const auto read = load_scene_of(recording, *file);
+  if (!read || read->inputs.empty()) return {};
+  std::string names;
+  for (const std::filesystem::path& input : read->inputs) {
+    names += (names.empty() ? "" : ", ") + input.string();
+  }
+  return "The recording is of a version that did not store hashes of files other than scene and "
+         "arm, so these may have changed: " +
+         names + ".";
 }
 
 driver::Result<void> check_repeatable(const Recording& recording, const std::string& scene) {
@@ -284,9 +303,17 @@ driver::Result<void> check_repeatable(const Recording& recording, const std::str
   if (!arm.empty() && scene::text_of(arm) != recording.info.arm_text) {
     return driver::Error{arm.string() + " has changed since the recording."};
   }
+  if (!recording.info.file_hashes.empty()) {
+    const auto read = load_scene_of(recording, *file);
+    if (!read) return read.error();
+    auto same = scene::check_file_hashes(recording.info.file_hashes, read->inputs);
+    if (!same) return same;
+  }
   if (scene::program_name() != recording.info.program) {
+    const std::string unhashed = unhashed_files(recording, scene);
     return driver::Error{"recorded by " + recording.info.program + ", this is " +
-                         scene::program_name() + "; only the same build is bit-identical."};
+                         scene::program_name() + "; only the same build is bit-identical." +
+                         (unhashed.empty() ? "" : " " + unhashed)};
   }
   return {};
 }

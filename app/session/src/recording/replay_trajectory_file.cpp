@@ -2,6 +2,7 @@
 #include <memory>
 #include <utility>
 
+#include "files/file_hashes.h"
 #include "meshes/object_mesh.h"
 #include "recording/replay_trajectory.h"
 #include "text_file.h"
@@ -61,7 +62,8 @@ driver::Result<TrajectoryReplay> touch_along(std::vector<TrajectoryPoint> trajec
                       .clock = "virtual",
                       .program = scene::program_name(),
                       .rate = scene->rate,
-                      .seed = scene->seed};
+                      .seed = scene->seed,
+                      .file_hashes = scene::FileHashes(scene->inputs).text()};
   return replay;
 }
 

@@ -68,6 +68,11 @@ TEST(SceneArms, ReportsMistakesInSeveralArms) {
   says(arm_entry("left") + arm_entry("left"), "expected different names, found \"left\" twice");
   says(two, "hand: cannot be used with arms", "hand: {path: [{t: 0, at: [0, 0, 0]}]}\n");
   says(two, "arm: cannot be used with arms", "arm: arm.yaml\n");
+  says(two, "at: is the place of one arm", "at: {turn_degrees: 90}\n");
+  for (const std::string key : {"tool: {radius: 0.003}", "rate: 500", "faults: apart"}) {
+    says(arm_entry("left") + arm_entry("right", ", " + key),
+         key.substr(0, key.find(':')) + ": applies to the whole scene");
+  }
   says(arm_entry("left") + arm_entry("../x"), "name: expected letters, digits and _");
   says(two, "faults", "faults: never\n");
   says(arm_entry("left") + arm_entry("right", ", at: {turn_degrees: 45}"),
@@ -79,6 +84,14 @@ TEST(SceneArms, ReportsMistakesInSeveralArms) {
   std::string nine;
   for (int i = 0; i < 9; ++i) nine += arm_entry("a" + std::to_string(i));
   says(nine, "at most 8 arms, found 9");
+}
+
+TEST(SceneArms, ReaderForOneArmNamesTheArms) {
+  ASSERT_TRUE(read_several(arm_entry("left") + arm_entry("right")));
+  const auto scene = scene::load_scene(kFolder / "several.yaml");
+  ASSERT_FALSE(scene);
+  EXPECT_NE(scene.error().message.find("(left, right)"), std::string::npos)
+      << scene.error().message;
 }
 
 }  // namespace

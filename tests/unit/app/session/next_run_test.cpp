@@ -204,6 +204,36 @@ TEST_F(NextRunTest, LoopsOnlyOnceFromEachRun) {
   EXPECT_FALSE(next.take(driver::ServoEnd::kDone, false)) << "the next run has not begun";
 }
 
+TEST_F(NextRunTest, LoopContinuesWithTheLastGoodScene) {
+  for (const ClockKind clock : {ClockKind::kPaced, ClockKind::kVirtual, ClockKind::kWall}) {
+    write("300");
+    options_.clock = clock;
+    const std::uint64_t fresh = hash_alone();
+    NextRun next = next_of(true, true);
+    auto session = prepare();
+    next.begin(*session);
+    write("stiff");
+    for (int run = 0; run < 2; ++run) {
+      auto again = next.take(driver::ServoEnd::kDone, false);
+      ASSERT_TRUE(again) << "run " << run;
+      ASSERT_TRUE(again->share(options_, session->shared()));
+      next.begin(*again);
+      EXPECT_NE(view(*again)->notice().find("ball.yaml:15: stiffness: expected"), std::string::npos)
+          << view(*again)->notice();
+      session = std::move(again);
+    }
+    if (clock != ClockKind::kWall) {
+      ASSERT_TRUE(session->open_arm());
+      EXPECT_EQ(session->run(next.ended()), driver::ServoEnd::kDone);
+      EXPECT_EQ(hash_of(*session), fresh);
+    }
+    write("250");
+    const auto repaired = next.take(driver::ServoEnd::kDone, false);
+    ASSERT_TRUE(repaired);
+    EXPECT_EQ(repaired->scene().objects[0].stiffness, 250);
+  }
+}
+
 TEST_F(NextRunTest, HandlerWithoutANextRunServesRecordings) {
   const auto session = prepare();
   ViewerRequestHandler handler(*session, nullptr, false);

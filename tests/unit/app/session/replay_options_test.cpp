@@ -76,6 +76,61 @@ TEST_F(ReplayOptions, RateFactorRepeats) {
   expect_repeats(recorded("honey", {.duration = 1, .rate_factor = 2}));
 }
 
+/// A copy of the scene with a mesh and two pictures, and its recording.
+class ReplayOfFiles : public ReplayOptions {
+ protected:
+  void SetUp() override {
+    ReplayOptions::SetUp();
+    folder_ = support::scratch_folder() / "tissue";
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    for (const char* name : {"tissue.yaml", "tissue.obj", "tissue_lumps.png", "tissue_ribs.png"}) {
+      std::filesystem::copy_file(std::filesystem::path("app/scenes") / name, folder_ / name);
+    }
+    recording_ = recorded((folder_ / "tissue.yaml").string(), {.duration = 0.1});
+  }
+  /// Replaces one picture by the other.
+  void change_picture() const {
+    std::filesystem::copy_file(folder_ / "tissue_ribs.png", folder_ / "tissue_lumps.png",
+                               std::filesystem::copy_options::overwrite_existing);
+  }
+
+  std::filesystem::path folder_;
+  session::Recording recording_;
+};
+
+TEST_F(ReplayOfFiles, NamesAChangedPicture) {
+  expect_repeats(recording_);
+  change_picture();
+  const auto repeatable = session::check_repeatable(recording_);
+  ASSERT_FALSE(repeatable);
+  EXPECT_NE(repeatable.error().message.find("tissue_lumps.png"), std::string::npos)
+      << repeatable.error().message;
+}
+
+TEST_F(ReplayOfFiles, OldRecordingNamesTheFilesWithoutHashes) {
+  EXPECT_EQ(session::unhashed_files(recording_), "");
+  recording_.info.file_hashes.clear();
+  change_picture();
+  EXPECT_TRUE(session::check_repeatable(recording_));
+  for (const char* name : {"tissue.obj", "tissue_lumps.png", "tissue_ribs.png"}) {
+    EXPECT_NE(session::unhashed_files(recording_).find(name), std::string::npos) << name;
+  }
+  recording_.info.program = "an older build";
+  const auto repeatable = session::check_repeatable(recording_);
+  ASSERT_FALSE(repeatable);
+  EXPECT_NE(repeatable.error().message.find("tissue_lumps.png"), std::string::npos)
+      << repeatable.error().message;
+}
+
+TEST_F(ReplayOfFiles, PictureChangedBeforeTheRecordingHasNoHash) {
+  auto opened = session::Session::open(folder_ / "tissue.yaml", {.duration = 0.1});
+  ASSERT_TRUE(opened) << opened.error().message;
+  change_picture();
+  recording_.info = (*opened)->recording_info();
+  EXPECT_FALSE(session::check_repeatable(recording_));
+}
+
 TEST_F(ReplayOptions, PlainRunHoldsNoOptions) {
   EXPECT_EQ(recorded("box", {.duration = 0.1}).info.options, "");
 }

@@ -127,5 +127,16 @@ TEST(ExitCode, DependsOnTheEndOfTheRun) {
   EXPECT_EQ(cli::exit_code_of(ServoEnd::kFault, Fault::kOverSpeed, true), cli::kExitFault);
 }
 
+TEST(ExitCode, DoesNotDependOnTheOrderOfArms) {
+  const auto both = [](cli::ExitCode one, cli::ExitCode other) {
+    EXPECT_EQ(cli::more_serious(one, other), cli::more_serious(other, one));
+    return cli::more_serious(one, other);
+  };
+  EXPECT_EQ(both(cli::kExitFault, cli::kExitInterrupted), cli::kExitFault);
+  EXPECT_EQ(both(cli::kExitFault, cli::kExitDone), cli::kExitFault);
+  EXPECT_EQ(both(cli::kExitInterrupted, cli::kExitDone), cli::kExitInterrupted);
+  EXPECT_EQ(both(cli::kExitDone, cli::kExitDone), cli::kExitDone);
+}
+
 }  // namespace
 }  // namespace thimble

@@ -4,11 +4,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -105,7 +107,7 @@ std::vector<Case> cases() {
   };
   for (const auto& [name, tracker, reason] :
        {std::tuple{"elephant.off", kPacked, "smooth: 100 %"},
-        std::tuple{"fandisk.off", kPacked, "smooth: 54 %"},
+        std::tuple{"fandisk.off", kPacked, "smooth: 56 %"},
         std::tuple{"cube-meshed.off", kEdgePlanes, "faceted: 100 %"},
         std::tuple{"handle.off", kEdgePlanes, "faceted: large triangles"},
         std::tuple{"lion.off", kEdgePlanes, "not closed"}}) {
@@ -159,6 +161,103 @@ TEST(ChooseTracker, IgnoresTheNumbersOfVerticesAndTriangles) {
     EXPECT_EQ(again.contact, chosen.contact) << one.name;
     EXPECT_EQ(again.reason, chosen.reason) << one.name;
   }
+}
+
+/// A cube of 12 n^2 triangles. `round`: projected to a ball, so that its triangles are about as
+/// large as each other. Its axes are tilted, and its coordinates are those of a file in single
+/// precision.
+TriangleMesh fine_cube(int n, bool round) {
+  TriangleMesh mesh;
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).matrix();
+  const auto along = [&](int i) {
+    const double place = 2.0 * i / n - 1;
+    return round ? std::tan(place * std::numbers::pi / 4) : place;
+  };
+  std::map<std::array<int, 3>, std::int32_t> shared;  // vertices on the edges of the cube
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2;
+    const auto vertex = [&](int i, int j) {
+      std::array<int, 3> place{};
+      place[static_cast<std::size_t>(axis)] = side % 2 == 0 ? 0 : n;
+      place[static_cast<std::size_t>((axis + 1) % 3)] = i;
+      place[static_cast<std::size_t>((axis + 2) % 3)] = j;
+      const auto add = [&] {
+        Vector3d p(along(place[0]), along(place[1]), along(place[2]));
+        if (round) p.normalize();
+        mesh.vertices.push_back((R * (0.02 * p)).cast<float>().cast<double>());
+        return static_cast<std::int32_t>(mesh.vertices.size() - 1);
+      };
+      if (i > 0 && i < n && j > 0 && j < n) return add();
+      const auto [found, is_new] = shared.try_emplace(place, 0);
+      if (is_new) found->second = add();
+      return found->second;
+    };
+    std::vector<std::int32_t> grid;
+    for (int i = 0; i <= n; ++i) {
+      for (int j = 0; j <= n; ++j) grid.push_back(vertex(i, j));
+    }
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        const auto at = [&](int a, int b) {
+          return grid[static_cast<std::size_t>((i + a) * (n + 1) + j + b)];
+        };
+        // Counter-clockwise from outside on the upper side of each axis.
+        const bool upper = side % 2 == 1;
+        mesh.triangles.push_back({at(0, 0), at(upper ? 1 : 0, upper ? 0 : 1), at(1, 1)});
+        mesh.triangles.push_back({at(0, 0), at(1, 1), at(upper ? 0 : 1, upper ? 1 : 0)});
+      }
+    }
+  }
+  return mesh;
+}
+
+TEST(ChooseTracker, FineBallsAreSmoothAndFineDiceFaceted) {
+  for (const int n : {29, 91, 160, 170, 289, 577}) {  // 10^4 to 4 10^6 triangles
+    const ChosenTracker ball = choose_tracker(fine_cube(n, true));
+    EXPECT_EQ(ball.contact.tracker, TrackerChoice::kPacked) << n << ": " << ball.reason;
+    EXPECT_EQ(ball.reason.substr(0, 14), "smooth: 100 % ") << n;
+    const ChosenTracker die = choose_tracker(fine_cube(n, false));
+    EXPECT_EQ(die.contact.tracker, TrackerChoice::kEdgePlanes) << n << ": " << die.reason;
+    EXPECT_EQ(die.reason, "faceted: 100 % of the area is flat") << n;
+  }
+}
+
+TEST(ChooseTracker, RoundingOfABarOfNarrowStripsIsFlat) {
+  // A tilted bar of narrow strips along its sides, with coordinates in single precision.
+  constexpr int kStrips = 2000;  // of each side
+  constexpr double kHalf = 0.02;
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).matrix();
+  TriangleMesh mesh;
+  const auto add = [&](double x, double y, double z) {
+    mesh.vertices.push_back((R * Vector3d(x, y, z)).cast<float>().cast<double>());
+    return static_cast<std::int32_t>(mesh.vertices.size() - 1);
+  };
+  const std::int32_t bottom = add(0, 0, -kHalf), top = add(0, 0, kHalf);
+  std::vector<std::array<std::int32_t, 2>> rim;
+  for (int side = 0; side < 4; ++side) {
+    for (int i = 0; i < kStrips; ++i) {
+      const double along = kHalf * (2.0 * i / kStrips - 1);
+      const double x = side == 0 ? along : side == 1 ? kHalf : side == 2 ? -along : -kHalf;
+      const double y = side == 0 ? -kHalf : side == 1 ? along : side == 2 ? kHalf : -along;
+      rim.push_back({add(x, y, -kHalf), add(x, y, kHalf)});
+    }
+  }
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    const auto& [a, b] = rim[i];
+    const auto& [c, d] = rim[(i + 1) % rim.size()];
+    for (const auto& corners : {std::array{a, c, d}, {a, d, b}, {bottom, c, a}, {top, b, d}}) {
+      mesh.triangles.push_back(corners);
+    }
+  }
+  const ChosenTracker chosen = choose_tracker(mesh);
+  EXPECT_EQ(chosen.contact.tracker, TrackerChoice::kEdgePlanes) << chosen.reason;
+}
+
+TEST(ChooseTracker, SlightCurvatureOfAFinePlateIsFlat) {
+  // A cap with a radius of 20 times its width, on a die.
+  TriangleMesh mesh = fine_cube(91, false);
+  for (Vector3d& p : mesh.vertices) p += p.squaredNorm() / (2 * 0.8) * p.normalized();
+  EXPECT_EQ(choose_tracker(mesh).contact.tracker, TrackerChoice::kEdgePlanes);
 }
 
 /// Returns the force on a tip that comes from `from` and stops at `to`.

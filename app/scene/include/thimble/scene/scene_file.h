@@ -180,6 +180,8 @@ struct Scene {
   FaultRule faults = FaultRule::kTogether;  ///< Effect of a fault with several arms.
   /// Radius of a tip that is a ball, m; 0: a point.
   double tip_radius = 0;
+  /// Files that the scene file names, other than arm files: meshes, pictures and bags, each once.
+  std::vector<std::filesystem::path> inputs;
 };
 
 /// Options for reading a scene.

@@ -38,6 +38,10 @@ struct RecordingInfo {
   /// Other options that change the result, one per line ("quality: draft"); empty if there are
   /// none.
   std::string options{};
+  /// Hashes of the other files that the scene reads (meshes with their buffers, pictures, bags),
+  /// one line per file: "0123456789abcdef /home/ann/pad.obj", after a heading. Empty in recordings
+  /// of versions before 0.3.
+  std::string file_hashes{};
 };
 
 /// Returns the file for the recording of one of several arms if `path` is requested: a file in the
@@ -126,8 +130,13 @@ THIMBLE_EXPORT driver::Result<std::vector<Replay>> replay_together(
     std::span<const Recording> recordings, const std::string& scene = {});
 
 /// Fails with the reason why a replay would not be bit-identical: another scene, arm file or build,
-/// or missing ticks. `scene` as for `replay`.
+/// a changed file that the scene reads, or missing ticks. `scene` as for `replay`.
 THIMBLE_EXPORT driver::Result<void> check_repeatable(const Recording& recording,
                                                      const std::string& scene = {});
+
+/// Returns a sentence that names the files that `check_repeatable` cannot check, because the
+/// recording has no hashes of them; empty if there are none. `scene` as for `replay`.
+THIMBLE_EXPORT std::string unhashed_files(const Recording& recording,
+                                          const std::string& scene = {});
 
 }  // namespace thimble::session

@@ -164,6 +164,11 @@ class THIMBLE_EXPORT Session {
   static driver::Result<std::unique_ptr<Session>> open_like(const Session& other,
                                                             std::uint64_t seed);
 
+  /// As `open_like`, but does not open the arms (`open_arm`). Fails if an arm of `other` is real or
+  /// the caller advances its clock. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<Session>> prepare_like(const Session& other,
+                                                               std::uint64_t seed);
+
   /// Performs the slow, arm-independent part of `open`: reads the files, plans the hand's path,
   /// builds the objects, starts the recording and makes the run visible to viewers. Real-time:
   /// never from the servo thread.

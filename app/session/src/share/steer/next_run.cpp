@@ -9,6 +9,12 @@
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::session {
+namespace {
+
+// Follows the error of a scene that cannot be used.
+constexpr const char* kContinues = "The run continues with the scene as it was read before.";
+
+}  // namespace
 
 void NextRun::begin(Session& session) {
   end_.store(false);
@@ -28,27 +34,44 @@ void NextRun::begin(Session& session) {
   files_ = FileWatch(files);
 }
 
-bool NextRun::prepare(const std::filesystem::path& scene) {
+bool NextRun::prepare(const std::filesystem::path& scene, bool continues) {
   auto prepared = prepare_(scene);
   if (prepared) {
     next_ = std::move(prepared).value();
     notice_.clear();
+    last_error_.clear();
     return true;
   }
-  scene::logger().error("{}", prepared.error().message);
-  notice_ = prepared.error().message;
+  const std::string& error = prepared.error().message;
+  notice_ = continues ? error + ' ' + kContinues : error;
   session_->shared()->set_notice(notice_);
+  // A loop tries the same file after each run.
+  if (error == last_error_) return false;
+  last_error_ = error;
+  scene::logger().error("{}", error);
+  if (continues) scene::logger().warn("{}", kContinues);
   return false;
 }
 
+/// Prepares the scene as the current run has read it. Returns whether it succeeded.
+bool NextRun::prepare_as_read() {
+  auto prepared = Session::prepare_like(*session_, session_->setup().seed());
+  if (!prepared) {
+    scene::logger().error("{}", prepared.error().message);
+    return false;
+  }
+  next_ = std::move(prepared).value();
+  return true;
+}
+
 /// Prepares the run that a viewer has requested since the last check, if any. Returns whether it
-/// succeeded.
-bool NextRun::prepare_requested() {
+/// succeeded. `continues`: as of `prepare`.
+bool NextRun::prepare_requested(bool continues) {
   const auto order = session_->shared()->restart_request_after(last_request_);
   if (!order) return false;
   last_request_ = order->number;
   scene::logger().info("A viewer requests {}.", order->scene.empty() ? "a restart" : order->scene);
-  return prepare(order->scene.empty() ? scene_ : std::filesystem::path(order->scene));
+  return prepare(order->scene.empty() ? scene_ : std::filesystem::path(order->scene), continues);
 }
 
 /// Prepares the scene again if its files have changed. Returns whether it succeeded.
@@ -56,10 +79,11 @@ bool NextRun::prepare_changed() {
   if (!reload_ || !files_.step()) return false;
   if (files_.as_at_first()) {  // the files are as in the current run again
     session_->shared()->set_notice("");
+    last_error_.clear();
     return false;
   }
   scene::logger().info("{} or the file of its arm has changed.", scene_.string());
-  return prepare(scene_);
+  return prepare(scene_, true);
 }
 
 void NextRun::update_pace() {
@@ -71,9 +95,9 @@ void NextRun::step(bool stop) {
   if (stop) end_.store(true);
   if (session_ == nullptr || end_.load()) return;
   update_pace();
-  if (!prepare_requested() && !prepare_changed()) return;
+  if (!prepare_requested(true) && !prepare_changed()) return;
   session_->shared()->close();
-  prepare_requested();  // a request made during the preparation
+  prepare_requested(false);  // a request made during the preparation
   end_.store(true);
 }
 
@@ -89,9 +113,10 @@ std::unique_ptr<Session> NextRun::take(driver::ServoEnd end, bool stop) {
     shared.set_notice(
         "The run is not restarted because it ended with a fault; check the fault first.");
   }
-  if (!fault) prepare_requested();
+  const bool loops = loop_ && end == driver::ServoEnd::kDone;
+  if (!fault) prepare_requested(loops);
   pause_ = end == driver::ServoEnd::kDone && shared.pause_asked();
-  if (!next_ && loop_ && end == driver::ServoEnd::kDone && !prepare(scene_)) return nullptr;
+  if (!next_ && loops && !prepare(scene_, true) && !prepare_as_read()) return nullptr;
   session_ = nullptr;
   return std::move(next_);
 }

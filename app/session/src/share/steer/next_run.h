@@ -46,13 +46,17 @@ class THIMBLE_EXPORT NextRun {
   /// Returns the flag that ends the current run.
   const std::atomic<bool>& ended() const noexcept { return end_; }
   /// Returns the next run after the current one has ended with `end`: the prepared one, the last
-  /// one that a viewer requested, or the same scene if `loops`. Null: none. An error of preparation
-  /// is logged and reported to viewers. The current run is closed to requests of viewers.
+  /// one that a viewer requested, or the same scene if `loops`. If its files can no longer be used,
+  /// the loop continues with the scene as read before. Null: none. An error of preparation is
+  /// logged and reported to viewers. The current run is closed to requests of viewers.
   std::unique_ptr<Session> take(driver::ServoEnd end, bool stop);
 
  private:
-  bool prepare(const std::filesystem::path& scene);
-  bool prepare_requested();
+  /// Prepares a scene. Returns whether it succeeded. `continues`: if it fails, the run continues or
+  /// restarts nevertheless, and the messages say so.
+  bool prepare(const std::filesystem::path& scene, bool continues);
+  bool prepare_as_read();
+  bool prepare_requested(bool continues);
   bool prepare_changed();
   void update_pace();
 
@@ -66,7 +70,8 @@ class THIMBLE_EXPORT NextRun {
   std::uint64_t last_request_ = 0;
   std::unique_ptr<Session> next_;
   bool pause_ = false;  // Pause requested of a run that has ended, to be applied to the next one.
-  std::string notice_;  // Reason why the last request is not the next run; empty if it is.
+  std::string last_error_;  // Last logged error of a preparation; empty after a success.
+  std::string notice_;      // Reason why the last request is not the next run; empty if it is.
   std::atomic<bool> end_{false};
 };
 

@@ -25,9 +25,6 @@ enum AccessorType : std::size_t {
   kFloat = 5126
 };
 
-// Maximum size of a named file, the same as for a mesh file, bytes.
-constexpr std::uint64_t kFileMax = std::uint64_t{4} << 30;
-
 std::size_t size_of(std::size_t type) {
   if (type == kByte || type == kUnsignedByte) return 1;
   if (type == kShort || type == kUnsignedShort) return 2;
@@ -110,7 +107,7 @@ driver::Result<std::string> bytes_of_file(const std::filesystem::path& folder,
   if (relative.empty() || relative.is_absolute() || leaves) {
     return Error{"it refers to a file outside its folder, " + shown(name)};
   }
-  auto bytes = driver::read_file(folder / relative, kFileMax);
+  auto bytes = driver::read_file(folder / relative, kGltfFileMax);
   if (!bytes) {
     std::string reason = bytes.error().message;
     if (reason.ends_with('.')) reason.pop_back();

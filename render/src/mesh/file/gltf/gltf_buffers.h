@@ -14,6 +14,9 @@
 
 namespace thimble::render {
 
+/// Maximum size of a glTF file, and of a file that it names; the same as for a mesh file, bytes.
+inline constexpr std::uint64_t kGltfFileMax = std::uint64_t{4} << 30;
+
 /// Returns a member of a JSON object; null if it is not an object or has no such member.
 const nlohmann::json* json_member(const nlohmann::json& object, const char* key);
 

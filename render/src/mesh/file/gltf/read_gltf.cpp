@@ -12,10 +12,12 @@
 
 #include "mesh/file/corner_values.h"
 #include "mesh/file/gltf/gltf_buffers.h"
+#include "mesh/file/mesh_kind.h"
 #include "mesh/file/mesh_parts.h"
 #include "mesh/file/read_in_child.h"
 #include "mesh/file/read_with_assimp.h"
 #include "mesh/file/text_words.h"
+#include "system/regular_file.h"
 
 namespace thimble::render {
 namespace {
@@ -515,6 +517,38 @@ driver::Result<TriangleMesh> read_gltf(const std::string& bytes, const std::stri
   return read_in_child(
       [&](MeshFileInfo& found) { return read_file(bytes, kind, folder, found, attributes); }, kind,
       kGltfLimits, info, attributes);
+}
+
+std::vector<std::filesystem::path> gltf_buffer_files(const std::filesystem::path& file) {
+  // The kind of a JSON or GLB file is determined by its first characters.
+  constexpr std::size_t kHead = 64;
+  const std::string kind = mesh_kind_of(driver::read_head(file, kHead), "");
+  if (kind != "gltf" && kind != "glb") return {};
+  const auto bytes = driver::read_file(file, kGltfFileMax);
+  if (!bytes) return {};
+  std::string_view text = *bytes;
+  if (kind == "glb") {
+    const auto chunks = chunks_of(text);
+    if (!chunks) return {};
+    text = chunks->first;
+  }
+  std::vector<std::filesystem::path> files;
+  const Json gltf = Json::parse(text, nullptr, false);
+  const Json* const buffers = json_member(gltf, "buffers");
+  if (buffers == nullptr) return {};
+  for (const Json& buffer : *buffers) {
+    const Json* const uri = json_member(buffer, "uri");
+    if (uri == nullptr || !uri->is_string()) continue;
+    const auto& name = uri->get_ref<const std::string&>();
+    // A name that was not encoded may contain a per cent sign.
+    for (const std::string& tried : {percent_decoded(name), name}) {
+      const std::filesystem::path path = file.parent_path() / tried;
+      if (name.starts_with("data:") || !driver::is_regular(path)) continue;
+      files.push_back(path);
+      break;
+    }
+  }
+  return files;
 }
 
 }  // namespace thimble::render

@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/triangle_mesh.h"
@@ -20,5 +22,10 @@ namespace thimble::render {
 driver::Result<TriangleMesh> read_gltf(const std::string& bytes, const std::string& kind,
                                        const std::filesystem::path& folder, MeshFileInfo& info,
                                        MeshAttributes* attributes = nullptr);
+
+/// Returns the files in its folder that a glTF or GLB file names as its buffers; empty for any
+/// other file. Files that do not exist are omitted. Real-time: never from the servo thread.
+THIMBLE_EXPORT std::vector<std::filesystem::path> gltf_buffer_files(
+    const std::filesystem::path& file);
 
 }  // namespace thimble::render
