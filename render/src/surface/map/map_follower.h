@@ -18,9 +18,9 @@ namespace thimble::render {
 /// the map by an additional slope r. So dx = (slope of the map + r) . dp along the path of the tip
 /// p. r points along the last path of the tip over the surface, whatever its direction. Its size
 /// is at most `ramp`, and it changes by at most `bend` times the path. A map that is steeper than
-/// `steepest` is felt with that slope, and led back in the same way. An edge at which the slope of
-/// the map turns by more than `bend` allows is spread too. On all other places the felt value is
-/// that of the map, bit for bit.
+/// `steepest` is felt with that slope, and led back in the same way. Where the slope turns by more
+/// than `bend` allows, at an edge or where the closest point comes to one, that is spread too. On
+/// all other places the felt value is that of the map, bit for bit.
 ///
 /// A force that is minus the gradient of an energy U(x, depth), with the slope that is returned,
 /// does no net work on any path that returns to the same felt value and depth. All functions are
@@ -68,33 +68,32 @@ class MapFollower {
       const Eigen::Vector3d step = p_WT - p_WT_before_;
       const double path = step.norm();
       bool stepped = apart || steep || apart_or_steep_;
-      if (triangle != triangle_) {
-        const Eigen::Vector3d before_W =
-            limited(slope_of(sample(triangle_, closest.p_M)), limits.steepest);
-        const Eigen::Vector3d turn = before_W - slope_W;
+      // The closest point comes to an edge or leaves it, or jumps.
+      const bool bent = (closest.J_MT - J_MT_).squaredNorm() > kBentMin;
+      if (bent || triangle != triangle_) {
+        const bool seam = triangle != triangle_ && !map.continues(triangle_, triangle, closest.p_M,
+                                                                  (closest.p_M - p_M_).norm());
+        const Eigen::Vector3d turn =
+            (bent ? map_slope_W_
+                  : limited(slope_of(sample(triangle_, closest.p_M)), limits.steepest)) -
+            slope_W;
         const double size = turn.norm();
-        const bool seam =
-            !map.continues(triangle_, triangle, closest.p_M, (closest.p_M - p_M_).norm());
         if (seam || size > limits.bend * path + kRounding * limits.ramp) {
-          const bool lagged = lags();
+          if (!lags()) finest_ = 0;
           r_W_ += turn;
-          const double offset = std::abs(felt_.value - found.value);
-          const double bend = limits.shortest > 0
-                                  ? (4 * offset / limits.shortest + 2 * size) / limits.shortest
-                                  : kUnlimited;
-          finest_ = lagged ? std::max(finest_, bend) : bend;
+          spread_turn(size, limits.shortest);
         }
         stepped = stepped || seam;
-      } else if (stepped && !lags()) {
-        finest_ = kUnlimited;
       }
+      if (stepped && !lags()) finest_ = 0;
       drag(p_WT);
       if (stepped || lags()) {
         const double bend = std::min(finest_, limits.bend);
-        steer(closest.fall_W, bend, path, limits.ramp);
+        steer(closest.fall_W, bend, path, limits.ramp, apart);
         // By the mean of both slopes: exact up to the third order of the step.
         const double felt = felt_.value + (felt_.slope_W + slope_W + r_W_).dot(step) / 2;
         offset_ = felt - found.value;
+        if (stepped) spread_step(std::abs(offset_), limits.shortest);
         if (!stepped) end_if_small(bend, path, limits.ramp);
       }
       felt_ = {found.value, slope_W};
@@ -103,6 +102,8 @@ class MapFollower {
     apart_or_steep_ = apart || steep;
     p_WT_before_ = p_WT;
     p_M_ = closest.p_M;
+    J_MT_ = closest.J_MT;
+    map_slope_W_ = slope_W;
     triangle_ = triangle;
     return felt_;
   }
@@ -118,6 +119,12 @@ class MapFollower {
   static constexpr double kRounding = 1e-9;  // [chosen: 10^6 roundings of a value]
   // Length over which the direction of the tip is taken, m: some steps of an encoder [PHYSICS 0].
   static constexpr double kTrail = 0.0002;
+  // Squared change of J from which it is a step. [chosen: from a face to an edge it is 1]
+  static constexpr double kBentMin = 0.25;
+  // Cosine of the angle between r and its goal from which it turns faster, and how much. [chosen:
+  // 37 degrees; the force then changes by at most 3 times stiffness times path, below the 5 of
+  // no_jumps.md]
+  static constexpr double kAstray = 0.8, kTurnFaster = 3;
   // What is left ends if the force then steps by less than it may in a few ticks. [chosen: with
   // the slope at which the rest would end by itself]
   static constexpr double kEndSteps = 3;
@@ -126,6 +133,14 @@ class MapFollower {
     const double size = slope_W.norm();
     if (size > steepest) return steepest / size * slope_W;
     return slope_W;
+  }
+
+  // Allow a bend that spreads a change of the slope, or of the value, over the path `shortest`.
+  void spread_turn(double slope, double shortest) noexcept {
+    finest_ = shortest > 0 ? std::max(finest_, 2 * slope / shortest) : kUnlimited;
+  }
+  void spread_step(double value, double shortest) noexcept {
+    finest_ = shortest > 0 ? std::max(finest_, 4 * value / (shortest * shortest)) : kUnlimited;
   }
 
   // Drags a point behind the tip.
@@ -137,12 +152,18 @@ class MapFollower {
   }
 
   // Turns r to the slope that leads the value back: as steep as it can be flattened in time again.
-  void steer(const Eigen::Vector3d& n_W, double bend, double path, double ramp) noexcept {
+  // It grows slowly and turns quickly: else it would always come too late for a tip that moves to
+  // and fro, or in small circles.
+  void steer(const Eigen::Vector3d& n_W, double bend, double path, double ramp,
+             bool apart) noexcept {
     const Eigen::Vector3d along = way_W_ - way_W_.dot(n_W) * n_W;
     const double size = std::min(ramp, std::sqrt(bend * std::abs(offset_)));
-    const Eigen::Vector3d turn = (offset_ > 0 ? -size : size) * along - r_W_;
+    const Eigen::Vector3d target = (offset_ > 0 ? -size : size) * along;
+    const Eigen::Vector3d turn = target - r_W_;
+    const bool astray = !apart && r_W_.dot(target) < kAstray * r_W_.norm() * target.norm();
+    const double reach = (astray ? kTurnFaster : 1) * bend * path;
     const double much = turn.norm();
-    r_W_ += much > bend * path ? Eigen::Vector3d(bend * path / much * turn) : turn;
+    r_W_ += much > reach ? Eigen::Vector3d(reach / much * turn) : turn;
   }
 
   void end_if_small(double bend, double path, double ramp) noexcept {
@@ -169,12 +190,14 @@ class MapFollower {
   Felt felt_;
   bool apart_or_steep_ = false;
   std::int32_t triangle_ = -1;
+  Eigen::Matrix3d J_MT_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d map_slope_W_{0, 0, 0};
   Eigen::Vector3d p_WT_before_{0, 0, 0}, p_M_{0, 0, 0};
   Eigen::Vector3d p_W_trail_{0, 0, 0}, way_W_{0, 0, 0};
   // Felt value and slope minus those of the map; 0: none.
   double offset_ = 0;
   Eigen::Vector3d r_W_{0, 0, 0};
-  double finest_ = 0;  // limit of the bend by the length of the step, 1/m^2
+  double finest_ = 0;  // bend that a step of the shortest path has, 1/m^2
 };
 
 }  // namespace thimble::render
