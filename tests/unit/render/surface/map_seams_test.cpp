@@ -100,9 +100,12 @@ std::shared_ptr<const HeightImage> step_picture(bool steep) {
   return std::make_shared<const HeightImage>(kSide, kSide, values);
 }
 
-// Two places of the picture, each of one value but for its upper rows, meet at x = 0.
+// Two places of the picture, each of one value but for its upper rows, meet at x = 0. The last 5 mm
+// in y have it five times: with the lines of a steep picture, a very steep place.
 Vector2d two_values(std::size_t side, const Vector3d& p) {
-  return {(side == 0 ? 0.25 : 0.75) + p.x() / 0.2, 0.1 + 0.8 * (p.y() + kHalf) / (2 * kHalf)};
+  const double turns = p.y() > 0.9 * kHalf ? 5 : 0;
+  return {(side == 0 ? 0.25 : 0.75) + p.x() / 0.2,
+          0.1 + 0.8 * (p.y() + kHalf) / (2 * kHalf) + turns};
 }
 
 SurfaceChoice stiff_by_picture(const Slab& on, const std::shared_ptr<const HeightImage>& image) {
