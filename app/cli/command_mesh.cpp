@@ -57,6 +57,23 @@ void print(const render::MeshFindings& found) {
   if (found.touchable()) scene::print_format("  volume      %.4g\n", found.volume);
 }
 
+// Prints what the maps of a scene can use of a file (`map: uv`, `stiffness_map`, `friction_map`).
+// `error`: why it cannot be read; empty if it can.
+void print_maps(const render::MeshAttributes& attributes, const std::string& error, Json& json) {
+  const bool coordinates = !attributes.uv.empty(), colours = !attributes.colours.empty();
+  json["texture_coordinates"] = coordinates;
+  json["vertex_colours"] = colours;
+  if (!error.empty()) {
+    scene::print_format("  maps        not readable: %s\n", error.c_str());
+    return;
+  }
+  scene::print_format("  maps        %s\n", coordinates && colours
+                                                ? "texture coordinates, vertex colours"
+                                            : coordinates ? "texture coordinates"
+                                            : colours     ? "vertex colours"
+                                                      : "no texture coordinates or vertex colours");
+}
+
 // Size from which a mesh without a unit is probably in mm, m: `run` reports it for the largest
 // reach of the shipped arms.
 constexpr double kLargeForArms = scene::kReachesReported * 0.2;
@@ -237,7 +254,14 @@ int describe_mesh_file(const MeshOptions& options, Json& json) {
   json["file"] = options.file;
   if (render::is_page_file(options.file)) return describe_pages(options, json);
   render::MeshFileInfo info;
-  const auto mesh = render::load_mesh(options.file, &info);
+  render::MeshAttributes attributes;
+  auto mesh = render::load_mesh_with_attributes(options.file, attributes, &info);
+  std::string without_maps;
+  if (!mesh) {
+    // The shape may be readable although texture coordinates or colours are not.
+    without_maps = mesh.error().message;
+    mesh = render::load_mesh(options.file, &info);
+  }
   if (!mesh) return report_error(mesh.error(), kExitBadInput);
   const render::MeshFindings found = render::check_mesh(*mesh);
   scene::print_format("%s (lengths in the file's unit)\n", options.file.c_str());
@@ -246,6 +270,7 @@ int describe_mesh_file(const MeshOptions& options, Json& json) {
   json["up"] = info.up != 0 ? Json(std::string(1, info.up)) : Json(nullptr);
   json["notes"] = info.notes;
   print(found);
+  print_maps(attributes, without_maps, json);
   if (info.unit) scene::print_format("  unit        %g m\n", *info.unit);
   if (info.up != 0) scene::print_format("  up          %c\n", info.up);
   const double side = (found.box_max - found.box_min).maxCoeff();

@@ -163,6 +163,14 @@ double rounded_down(double value) {
   return digit * std::floor(value / digit);
 }
 
+/// Returns the name of the stiffness of an object in its scene: `stiffness`, or the larger end of
+/// its map.
+std::string name_of_stiffness(const scene::SceneObject& object) {
+  if (!object.stiffness_map) return "stiffness";
+  const bool black = object.stiffness_map->black > object.stiffness_map->white;
+  return std::string(black ? "min" : "max") + " of its stiffness_map";
+}
+
 /// Returns advice for a wall whose damping makes it grow at any stiffness.
 std::string advice_to_damp_less(const scene::Scene& scene, const scene::SceneObject& object,
                                 const StabilityLimits& carried) {
@@ -175,8 +183,8 @@ std::string advice_to_damp_less(const scene::Scene& scene, const scene::SceneObj
   // At most the value without the surface's damping.
   const double safe =
       stability_limits(scene.arms.front().arm, carried.times, object.stiffness, 0).stiffness_safe;
-  return text +
-         fmt::format("Set it to 0, and the stiffness to {:.0f} N/m or less.", std::floor(safe));
+  return text + fmt::format("Set it to 0, and the {} to {:.0f} N/m or less.",
+                            name_of_stiffness(object), std::floor(safe));
 }
 
 /// Returns advice for a wall that is too stiff.
@@ -185,10 +193,10 @@ std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
   if (!(carried.stiffness_exact > 0)) return advice_to_damp_less(scene, object, carried);
   std::string text = fmt::format(
       "{}: a stiffness of {:.0f} N/m is unstable; with this arm, loop and hand the "
-      "limit is {:.0f} N/m (damping {:.3g} N s/m, latency {:.2f} ms). Set its "
-      "stiffness to {:.0f} N/m or less",
+      "limit is {:.0f} N/m (damping {:.3g} N s/m, latency {:.2f} ms). Set {} to {:.0f} N/m or less",
       object.name, object.stiffness, carried.stiffness_exact, carried.damping + object.damping,
-      1e3 * carried.latency, carried.stiffness_safe);
+      1e3 * carried.latency, (object.stiffness_map ? "the " : "its ") + name_of_stiffness(object),
+      carried.stiffness_safe);
   const std::optional<double> damping =
       object.damping > 0 ? stable_damping(scene, object, carried.times) : std::nullopt;
   if (damping && *damping > 0) {

@@ -92,12 +92,13 @@ Built mesh_touch(const StillSurface& still, const ContactChoice& choice,
   }
 }
 
+// `mapped`: the surface had maps, which its stages use by now.
 Built stiff_touch(const StillSurface& still, const ContactChoice& choice,
-                  const SurfaceChoice& surface) {
+                  const SurfaceChoice& surface, bool mapped = false) {
   if (needs_maps(surface)) {
     const auto used = use_maps(surface);
     if (!used) return used.error();
-    return stiff_touch(still, choice, *used);
+    return stiff_touch(still, choice, *used, true);
   }
   if (choice.tip_radius > 0) {
     return build_surface_touch(
@@ -109,6 +110,9 @@ Built stiff_touch(const StillSurface& still, const ContactChoice& choice,
     } else if constexpr (std::is_same_v<Contact, InMemoryContact>) {
       return build_surface_touch(Contact(still.packed, still.search), surface);
     } else {
+      if constexpr (std::is_same_v<Contact, MeshContact>) {
+        if (mapped) return mesh_touch<MappedMeshContact>(still, choice, surface);
+      }
       return mesh_touch<Contact>(still, choice, surface);
     }
   });

@@ -178,6 +178,13 @@ TEST(Tuning, LawMatchesTheFullSimulation) {
   scene.objects[0].stiffness = 8000;
   ASSERT_EQ(stability_warnings(scene).size(), 1u);
   EXPECT_NE(stability_warnings(scene)[0].find("Set its stiffness to"), std::string::npos);
+  // The remedy names the key that the scene has.
+  scene.objects[0].stiffness_map = render::MapChoice{.black = 0.5, .white = 1};
+  EXPECT_NE(stability_warnings(scene)[0].find("Set the max of its stiffness_map to"),
+            std::string::npos);
+  scene.objects[0].stiffness_map = render::MapChoice{.black = 1, .white = 0.5};
+  EXPECT_NE(stability_warnings(scene)[0].find("Set the min of its stiffness_map to"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ driver::Result<HeightImage> HeightImage::load(const std::filesystem::path& file)
   // Sixteen bits of every colour and of transparency, uncompressed, plus other contents of a file.
   constexpr std::uint64_t kMaxBytes = 8 * kSideMax * kSideMax + 30'000'000;
   auto regular = driver::RegularFile::open(file);
-  if (!regular) return broken(file, "it is missing or not a regular file");
+  if (!regular) return driver::Error{file.string() + ": " + regular.error().message};
   if (regular->size() > kMaxBytes) return broken(file, "it is larger than 64 MB");
   const int descriptor = regular->release();
   const std::unique_ptr<std::FILE, CloseFile> stream(fdopen(descriptor, "rb"));

@@ -3,6 +3,7 @@
 namespace thimble::render {
 
 template class TrackedContact<SurfaceTracker>;
+template class TrackedContact<ProxyPointTracker>;
 template class TrackedContact<OffsetTracker>;
 
 }  // namespace thimble::render

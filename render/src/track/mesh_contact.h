@@ -146,6 +146,11 @@ class THIMBLE_EXPORT TrackedContact {
   /// Returns the surface point at such a place. Real-time: safe.
   ClosestSurfacePoint closest_at(const TrianglePlace& place) const noexcept requires
       kHasTrianglePlace {
+    if constexpr (kReadsAtProxy) {
+      ClosestSurfacePoint closest = flat_closest_point(state_);
+      closest.fall_W = tracker_.fall(place);
+      return closest;
+    }
     const MovingPoint path = path_of(mesh(), place);
     return {.p_M = path.p_W, .n_M = state_.n_W, .J_MT = path.J, .fall_W = tracker_.fall(place)};
   }
@@ -177,6 +182,9 @@ class THIMBLE_EXPORT TrackedContact {
       return mesh.cell(triangle).neighbours[k];
     }
   };
+
+  // Whether the surface point is the proxy.
+  static constexpr bool kReadsAtProxy = requires { Tracker::kReadsAtProxy; };
 
   // Whether the tracker can continue from a face that does not hold the tip by its own rules.
   static constexpr bool kHoldsBehind = requires(Tracker & tracker, const Eigen::Vector3d& p) {
@@ -326,11 +334,28 @@ bool TrackedContact<Tracker>::hold_behind(const Eigen::Vector3d& p_WT) noexcept 
 /// Tracks over edge planes [BP 4b]: flat faces, the least work per tick.
 using MeshContact = TrackedContact<SurfaceTracker>;
 
+/// SurfaceTracker for a surface with maps, whose surface point is the proxy, straight above the
+/// tip.
+///
+/// The point by the distances to the edge planes is continuous over the edges of even meshes, as
+/// textures need it, but below large triangles with sharp edges it is up to the depth away. A map
+/// is read where it is seen. Where the proxy jumps from face to face, MapFollower leads the value
+/// on.
+class ProxyPointTracker : public SurfaceTracker {
+ public:
+  static constexpr bool kReadsAtProxy = true;
+  using SurfaceTracker::SurfaceTracker;
+};
+
+/// Tracks over edge planes, on a surface with maps.
+using MappedMeshContact = TrackedContact<ProxyPointTracker>;
+
 /// Tracks the smooth surface: Phong normal and the depth along it, continuous over smooth edges and
 /// vertices at every depth.
 using OffsetContact = TrackedContact<OffsetTracker>;
 
 extern template class TrackedContact<SurfaceTracker>;
+extern template class TrackedContact<ProxyPointTracker>;
 extern template class TrackedContact<OffsetTracker>;
 
 }  // namespace thimble::render

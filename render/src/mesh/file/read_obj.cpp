@@ -68,6 +68,12 @@ ObjCorner corner_of(std::string_view word) {
   return word.empty() ? corner : ObjCorner();
 }
 
+// Vertex with 7 numbers: the last four of them.
+struct Seven {
+  std::size_t line = 0, vertex = 0;
+  std::array<double, 4> rest{};
+};
+
 class ObjReader {
  public:
   ObjReader(std::string_view text, const std::string& name, MeshAttributes* attributes)
@@ -80,6 +86,9 @@ class ObjReader {
  private:
   std::optional<Error> read_statement(std::string_view keyword);
   std::optional<Error> read_vertex();
+  std::optional<Error> set_colour(std::size_t line, std::size_t vertex,
+                                  const Eigen::Vector3d& colour);
+  std::optional<Error> set_colours_of_sevens();
   std::optional<Error> read_texture_coordinate();
   std::optional<Error> read_face();
   // `textures`: numbers of the texture coordinates of the corners, -1 for none; empty if they are
@@ -97,6 +106,7 @@ class ObjReader {
   MeshAttributes* attributes_;
   std::vector<Eigen::Vector2d> texture_;  // texture coordinates
   std::vector<Eigen::Vector3d> colours_;  // of vertices; NaN: none
+  std::vector<Seven> sevens_;
   bool coloured_ = false;
   std::vector<std::int32_t> textures_;  // of the face being read
   std::vector<std::int32_t> early_textures_;
@@ -123,6 +133,7 @@ std::optional<Error> ObjReader::read() {
     if (auto error = add_face(face.line, corners, textures)) return error;
   }
   if (attributes_ == nullptr) return std::nullopt;
+  if (auto error = set_colours_of_sevens()) return error;
   if (coloured_) {
     append_values<Eigen::Vector3d>(
         mesh_.triangles, 0,
@@ -187,16 +198,50 @@ std::optional<Error> ObjReader::read_vertex() {
   if (attributes_ == nullptr) return std::nullopt;
   colours_.push_back(no_value<Eigen::Vector3d>());
   if (count < 6) return std::nullopt;
-  const std::size_t first = count == 6 ? 3 : 4;
-  Eigen::Vector3d colour;
-  for (Eigen::Index k = 0; k < 3; ++k) colour[k] = numbers[first + static_cast<std::size_t>(k)];
+  if (count == 7) {
+    sevens_.push_back({words_.line(),
+                       mesh_.vertices.size() - 1,
+                       {numbers[3], numbers[4], numbers[5], numbers[6]}});
+    return std::nullopt;
+  }
+  return set_colour(words_.line(), mesh_.vertices.size() - 1,
+                    Eigen::Vector3d(numbers[3], numbers[4], numbers[5]));
+}
+
+std::optional<Error> ObjReader::set_colour(std::size_t line, std::size_t vertex,
+                                           const Eigen::Vector3d& colour) {
   // Written so that NaN is refused.
   if (!(colour.minCoeff() >= 0 && colour.maxCoeff() <= 1) || colour.hasNaN()) {
-    return words_.error("the colour of vertex " + std::to_string(mesh_.vertices.size()) +
-                        " is not three numbers from 0 to 1.");
+    return words_.error_at(line, "the colour of vertex " + std::to_string(vertex + 1) +
+                                     " is not three numbers from 0 to 1. If the colours of the "
+                                     "file are from 0 to 255, divide them by 255, or export the "
+                                     "mesh as PLY.");
   }
-  colours_.back() = colour;
+  colours_[vertex] = colour;
   coloured_ = true;
+  return std::nullopt;
+}
+
+// Some programs write `x y z w r g b` with a weight of 1, others `x y z r g b a` with the opacity.
+// Which one it is follows from the column that is 1 in all vertices.
+std::optional<Error> ObjReader::set_colours_of_sevens() {
+  const auto always_one = [this](std::size_t k) {
+    return std::all_of(sevens_.begin(), sevens_.end(),
+                       [k](const Seven& seven) { return seven.rest[k] == 1; });
+  };
+  const bool weight = always_one(0), opacity = always_one(3);
+  if (!sevens_.empty() && weight == opacity) {
+    return words_.error_at(
+        sevens_.front().line,
+        "vertices with 7 numbers may be x y z w r g b (w = 1) or x y z r g b a (a = 1), and here " +
+            std::string(weight ? "both fit" : "neither fits") +
+            ". Write the colours as v x y z r g b, or export the mesh as PLY.");
+  }
+  for (const auto& [line, vertex, rest] : sevens_) {
+    const std::size_t first = weight ? 1 : 0;
+    const Eigen::Vector3d colour(rest[first], rest[first + 1], rest[first + 2]);
+    if (auto error = set_colour(line, vertex, colour)) return error;
+  }
   return std::nullopt;
 }
 

@@ -253,17 +253,22 @@ class VertexValues {
     }
     if (!colour_values_.empty()) {
       for (const double share : colour_values_.back()) {
-        if (!(share >= 0 && share <= 1)) return "a colour that is not three numbers from 0 to 1";
+        if (!(share >= 0 && share <= 1)) {
+          return "a colour that is not three numbers from 0 to 1. Write colours as uchar from 0 to "
+                 "255, or as float from 0 to 1";
+        }
       }
     }
     return {};
   }
-  // Hands the values out to the corners of a mesh.
+  // Hands the values out to the corners of a mesh. Faces with coordinates of their own keep them.
   void give(const TriangleMesh& mesh, MeshAttributes& attributes) const {
     const auto of = [](const auto& values) {
       return [&values](std::int32_t vertex) { return values[static_cast<std::size_t>(vertex)]; };
     };
-    if (!uv_values_.empty()) append_values(mesh.triangles, 0, of(uv_values_), attributes.uv);
+    if (!uv_values_.empty() && attributes.uv.empty()) {
+      append_values(mesh.triangles, 0, of(uv_values_), attributes.uv);
+    }
     if (!colour_values_.empty()) {
       append_values(mesh.triangles, 0, of(colour_values_), attributes.colours);
     }
@@ -320,14 +325,51 @@ std::optional<Error> read_vertex(const Element& element, std::int64_t number, Nu
   return std::nullopt;
 }
 
+// Texture coordinates in a list of each face, u and v per corner, as MeshLab writes them. [S
+// MeshLab 2022.02, wedge coordinates]
+constexpr std::string_view kFaceCoordinates = "texcoord";
+
+// Appends the texture coordinates `list` of the corners of a face to its triangles, from `first`
+// on.
+std::optional<Error> add_face_coordinates(std::int64_t number,
+                                          const std::vector<std::int32_t>& corners,
+                                          const std::vector<double>& list, std::size_t first,
+                                          const TriangleMesh& mesh, MeshAttributes& attributes) {
+  const std::string face = "face " + std::to_string(number);
+  if (list.size() != 2 * corners.size()) {
+    return Error{face + " has " + std::to_string(list.size()) + " texture coordinates for " +
+                 std::to_string(corners.size()) +
+                 " corners; texcoord needs two for each. Export the mesh again, or as OBJ."};
+  }
+  for (const double one : list) {
+    // Written so that NaN is refused.
+    if (std::abs(one) <= kTextureCoordinateMax) continue;
+    return Error{face + " has a texture coordinate that is not a number between -1e6 and 1e6."};
+  }
+  const PolygonCorners places(corners);
+  append_values<Eigen::Vector2d>(
+      mesh.triangles, first,
+      [&](std::int32_t vertex) {
+        const std::size_t k = places.of(vertex);
+        return Eigen::Vector2d(list[2 * k], list[2 * k + 1]);
+      },
+      attributes.uv);
+  return std::nullopt;
+}
+
+// `attributes` is null if texture coordinates are not read.
 std::optional<Error> read_face(const Element& element, std::int64_t number, Numbers& numbers,
-                               std::vector<std::int32_t>& corners, TriangleMesh& mesh) {
+                               std::vector<std::int32_t>& corners, TriangleMesh& mesh,
+                               MeshAttributes* attributes) {
   corners.clear();
+  std::vector<double> coordinates;
   bool there = true;
   const auto most = static_cast<double>(mesh.vertices.size());
   for (const Property& property : element.properties) {
     const bool wanted = property.name == "vertex_indices" || property.name == "vertex_index";
+    const bool placed = attributes != nullptr && property.name == kFaceCoordinates;
     const auto take = [&](double value) {
+      if (placed) coordinates.push_back(value);
       if (!wanted) return;
       const bool whole = value >= 0 && value < most && value == std::floor(value);
       there = there && whole;
@@ -338,10 +380,12 @@ std::optional<Error> read_face(const Element& element, std::int64_t number, Numb
   if (!there) {
     return Error{"face " + std::to_string(number) + " refers to a vertex that does not exist."};
   }
+  const std::size_t first = mesh.triangles.size();
   if (corners.size() >= 3 && !triangulate_polygon(mesh.vertices, corners, mesh.triangles)) {
     return Error{too_many_corners("face " + std::to_string(number), corners.size())};
   }
-  return std::nullopt;
+  if (coordinates.empty() || corners.size() < 3) return std::nullopt;
+  return add_face_coordinates(number, corners, coordinates, first, mesh, *attributes);
 }
 
 // Refuses elements whose data would be missing or wrong in the mesh.
@@ -402,7 +446,7 @@ driver::Result<TriangleMesh> read_ply(std::string_view bytes, std::vector<std::s
       if (element.name == "vertex") {
         error = read_vertex(element, i, numbers, mesh, values ? &*values : nullptr);
       } else if (element.name == "face") {
-        error = read_face(element, i, numbers, corners, mesh);
+        error = read_face(element, i, numbers, corners, mesh, attributes);
       } else {
         for (const Property& property : element.properties) {
           if (!read_property(property, numbers, [](double) {})) return ends_in(element, i);
@@ -417,7 +461,10 @@ driver::Result<TriangleMesh> read_ply(std::string_view bytes, std::vector<std::s
     for (const Eigen::Vector3d& vertex : mesh.vertices) precision.add(vertex);
     if (auto kept = precision.judge(mesh, notes); !kept) return kept.error();
   }
-  if (values) values->give(mesh, *attributes);
+  if (values) {
+    values->give(mesh, *attributes);
+    complete(mesh.triangles.size(), *attributes);
+  }
   return mesh;
 }
 

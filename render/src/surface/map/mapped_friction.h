@@ -24,9 +24,13 @@ class MappedFriction final : public AnyStage {
 
   void touch_at(const ClosestSurfacePoint& closest, const driver::DeviceState& state,
                 SurfaceResponse& response) noexcept override {
-    const MapFollower::Felt felt =
-        follower_.follow(state.p_WT, closest, map_->at(response.contact.triangle, closest.p_M),
-                         map_->slope_max(), {.ramp = 1 / kStepPath, .steepest = 1 / kStepPath});
+    const auto sample = [&](std::int32_t triangle, const Eigen::Vector3d& p_M) noexcept {
+      return map_->at(triangle, p_M);
+    };
+    const MapFollower::Felt felt = follower_.follow(
+        state.p_WT, closest, response.contact.triangle,
+        sample(response.contact.triangle, closest.p_M), *map_, sample,
+        {.ramp = 2 / kStepPath, .bend = 6 / (kStepPath * kStepPath), .steepest = 1 / kStepPath});
     const double factor = black_ + (white_ - black_) * felt.value;
     SurfaceResponse scaled = response;
     // Written so that NaN means no friction.
@@ -47,7 +51,8 @@ class MappedFriction final : public AnyStage {
 
  private:
   // Path over which a step from black to white is felt, m. [chosen: a step within it is still
-  // felt as a click]
+  // felt as a click] The limits of MapFollower follow from it: with the bend b the slope grows over
+  // the path v / b to v and ends over 2 v / b, together the step v^2 / (2 b) + v^2 / b.
   static constexpr double kStepPath = 0.00025;
 
   std::unique_ptr<AnyStage> friction_;

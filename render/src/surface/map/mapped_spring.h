@@ -23,8 +23,9 @@ namespace thimble::render {
 /// its negative gradient: the second term pushes along the surface, towards softer places. It is k
 /// D n times D / 2 times the gradient of log k. So a MapFollower follows log k, with a gradient of
 /// at most 1 / D and ramps of as much: each pushes aside with at most half the normal force, and
-/// both with at most all of it. A sharp border is so spread over a path of some depths, and no step
-/// of the map is a step of the force. The damper does not depend on the map.
+/// both with at most all of it. A ramp bends so that the force aside changes by at most k times the
+/// path, as the force of the spring does. A sharp border is so spread over a path of some depths,
+/// and no step of the map is a step of the force. The damper does not depend on the map.
 class MappedSpring {
  public:
   /// Takes the spring, and the shares of its stiffness at black and white, 0 to 1. Precondition:
@@ -46,17 +47,26 @@ class MappedSpring {
     const ContactState& contact = response.contact;
     // A conservative texture has tilted the normal and stretched the depth (texture_height.h).
     const double depth = contact.depth * std::max(contact.n_W.dot(closest.fall_W), 0.0);
-    const SurfaceMap::Sample found = map_->at(contact.triangle, closest.p_M);
-    const double range = white_ - black_;
-    const double share = black_ + range * found.value;
+    const auto share_at = [&](const SurfaceMap::Sample& found) noexcept {
+      return black_ + (white_ - black_) * found.value;
+    };
     // The logarithm, from 0 at the softest place to 1 at the stiffest.
-    const SurfaceMap::Sample log_found{
-        .value = std::clamp(math::log(share / low_) / logs_, 0.0, 1.0),
-        .slope_M = range / (share * logs_) * found.slope_M};
-    const double steepest = depth * logs_ * kSteepest > 1 ? 1 / (depth * logs_) : kSteepest;
+    const auto log_of = [&](const SurfaceMap::Sample& found) noexcept {
+      const double share = share_at(found);
+      return SurfaceMap::Sample{.value = std::clamp(math::log(share / low_) / logs_, 0.0, 1.0),
+                                .slope_M = (white_ - black_) / (share * logs_) * found.slope_M};
+    };
+    const SurfaceMap::Sample found = map_->at(contact.triangle, closest.p_M);
+    const double steepest = limited(1 / (depth * logs_), kSteepest);
     const MapFollower::Felt felt =
-        follower_.follow(state.p_WT, closest, log_found, high_ / (low_ * logs_) * map_->slope_max(),
-                         {.ramp = steepest, .steepest = steepest});
+        follower_.follow(state.p_WT, closest, contact.triangle, log_of(found), *map_,
+                         [&](std::int32_t triangle, const Eigen::Vector3d& p_M) noexcept {
+                           return log_of(map_->at(triangle, p_M));
+                         },
+                         {.ramp = steepest,
+                          .bend = limited(2 / (depth * depth * logs_), kSteepest * kSteepest),
+                          .steepest = steepest});
+    const double share = share_at(found);
     const double felt_share = follower_.lags() ? low_ * math::exp(logs_ * felt.value) : share;
     // Written so that NaN means no force.
     if (!(felt_share > 0)) return;
@@ -89,6 +99,11 @@ class MappedSpring {
   void list_settings(LiveSettings& settings) { spring_.list_settings(settings); }
 
  private:
+  // Returns a limit of the slope, or the largest one if it is larger, or NaN.
+  static double limited(double limit, double largest) noexcept {
+    return limit < largest ? limit : largest;
+  }
+
   static constexpr double kShareMin = 1e-5;  // 1 N/m of the largest stiffness of a scene
   // Gradient that is felt where it causes no force, 1/m. [chosen: a step within a micrometre]
   static constexpr double kSteepest = 1e6;

@@ -16,6 +16,9 @@ namespace {
 // of their longer side: as for triangles in space (kFlatness). [chosen]
 constexpr double kFlatUv = 1e-12;
 
+// Values and texture coordinates that differ by less are equal. [chosen: 10^6 roundings]
+constexpr double kSameValue = 1e-9;
+
 std::string place_of(const SurfaceMaps& maps, std::size_t triangle) {
   const Eigen::Vector3d& p = maps.middles[triangle];
   // A triangle that a repair has added has no place in the file.
@@ -57,14 +60,14 @@ driver::Result<std::shared_ptr<const SurfaceMap>> SurfaceMap::of_image(
   if (maps->uv.empty()) {
     return driver::Error{
         "The file has no texture coordinates, which " + user +
-        " needs. Export the mesh with them, as OBJ (vt), PLY (s and t, or u and v) "
-        "or glTF (TEXCOORD_0)."};
+        " needs. Export the mesh with them, as OBJ (vt), PLY (s and t, u and v, or texcoord of "
+        "faces) or glTF (TEXCOORD_0)."};
   }
   const std::shared_ptr<SurfaceMap> map(new SurfaceMap);
   const Eigen::Vector2d pixels(static_cast<double>(image->width()),
                                static_cast<double>(image->height()));
   std::vector<bool> white(maps->uv.size(), false);
-  bool some = false;
+  bool some = false, spread = false;  // has coordinates; those of a triangle have an area
   for (std::size_t t = 0; t < maps->uv.size(); ++t) {
     const AffineValue<2>& uv = maps->uv[t];
     if (!uv.given()) {
@@ -78,6 +81,7 @@ driver::Result<std::shared_ptr<const SurfaceMap>> SurfaceMap::of_image(
       white[t] = true;
       continue;
     }
+    spread = true;
     if (stretch.largest * image->slope_max() > map->slope_max_) {
       map->slope_max_ = stretch.largest * image->slope_max();
       map->steepest_ = place_of(*maps, t);
@@ -88,6 +92,11 @@ driver::Result<std::shared_ptr<const SurfaceMap>> SurfaceMap::of_image(
   if (std::find(white.begin(), white.end(), true) != white.end()) {
     if (missing == Missing::kRefused || !some) {
       return missing_error(*maps, white, user, "texture coordinates");
+    }
+    if (!spread) {
+      return driver::Error{
+          "The texture coordinates of no triangle have an area, which " + user +
+          " needs. Unwrap the mesh in the program that made it, and export it again."};
     }
     map->white_ = std::move(white);
   }
@@ -144,6 +153,35 @@ SurfaceMap::Sample SurfaceMap::at(std::int32_t triangle,
   const HeightImage::Sample sample = image_->at(width * place[0] - 0.5, height * place[1] - 0.5);
   return {sample.value, width * sample.du * uv.slope.row(0).transpose() +
                             height * sample.dv * uv.slope.row(1).transpose()};
+}
+
+bool SurfaceMap::continues(std::int32_t before, std::int32_t triangle, const Eigen::Vector3d& p_M,
+                           double path) const noexcept {
+  const auto a = static_cast<std::size_t>(before), b = static_cast<std::size_t>(triangle);
+  // Both functions are equal where the triangles meet, which is within `path` of the place.
+  if (!image_) {
+    if (a >= maps_->colours.size() || b >= maps_->colours.size()) return false;
+    const auto row = static_cast<Eigen::Index>(channel_);
+    const AffineValue<3>& from = maps_->colours[a];
+    const AffineValue<3>& to = maps_->colours[b];
+    const double apart =
+        (from.slope.row(row) - to.slope.row(row)) * p_M + (from.offset[row] - to.offset[row]);
+    const double reach = (from.slope.row(row).norm() + to.slope.row(row).norm()) * path;
+    return std::abs(apart) <= reach + kSameValue;
+  }
+  if (a >= maps_->uv.size() || b >= maps_->uv.size()) return false;
+  if (!white_.empty() && (white_[a] || white_[b])) return white_[a] && white_[b];
+  const AffineValue<2>& from = maps_->uv[a];
+  const AffineValue<2>& to = maps_->uv[b];
+  const Eigen::Vector2d place = to.slope * p_M + to.offset;
+  const Eigen::Vector2d apart = from.slope * p_M + from.offset - place;
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    // The picture repeats.
+    const double nearest = std::abs(apart[k] - std::nearbyint(apart[k]));
+    const double reach = (from.slope.row(k).norm() + to.slope.row(k).norm()) * path;
+    if (!(nearest <= reach + kSameValue * (1 + std::abs(place[k])))) return false;
+  }
+  return true;
 }
 
 }  // namespace thimble::render

@@ -46,6 +46,13 @@ class SurfaceMap {
   /// pixels.
   Sample at(std::int32_t triangle, const Eigen::Vector3d& p_M) const noexcept;
 
+  /// Returns whether the map is continuous from one triangle to the next one, near the place `p_M`
+  /// (m) that was reached over `path` (m) of the surface. At a seam the two triangles continue with
+  /// different places of the picture, or colours; a difference that the path explains is none.
+  /// NaN is a seam. Real-time: safe.
+  bool continues(std::int32_t before, std::int32_t triangle, const Eigen::Vector3d& p_M,
+                 double path) const noexcept;
+
   /// Returns a bound of the gradient's size on any triangle, 1/m.
   double slope_max() const noexcept { return slope_max_; }
   /// Returns the shortest side of a pixel on any triangle, m; 0 for colours.

@@ -32,6 +32,10 @@ ForceSensitivity texture_lever(const TextureExtent& extent) {
           .per_stiffness = extent.relief * math::hypot(1, kTextureSlopeMax)};
 }
 
+double shortest_wave(const TextureSettings& settings, const EffectContext& context) {
+  return 2 * settings.hand_speed * context.tick;
+}
+
 void check_texture(SettingsReader& reader, std::string_view key, const TextureExtent& extent,
                    const TextureSettings& settings, const EffectContext& context) {
   const double deepest =

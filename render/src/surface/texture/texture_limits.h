@@ -42,6 +42,10 @@ double texture_headroom(const TextureExtent& extent, const EffectContext& contex
 /// and k (d + g h) |grad h| together. Real-time: never from the servo thread.
 ForceSensitivity texture_lever(const TextureExtent& extent);
 
+/// Returns the length of the shortest wave that the loop can render for a hand at `hand_speed`, m:
+/// two ticks. Real-time: never from the servo thread.
+double shortest_wave(const TextureSettings& settings, const EffectContext& context);
+
 /// Refuses, with a message at `key`, a texture that is deeper than the arm's full force can press
 /// into the surface, or steeper than kTextureSlopeMax. Also refuses one so fine that a hand at
 /// `hand_speed` crosses more than half a wave per tick. Real-time: never from the servo thread.

@@ -31,7 +31,8 @@ UvHeightMap::UvHeightMap(std::shared_ptr<const SurfaceMap> map, const HeightMap:
       height_(settings.height),
       extent_(extent_of(*map_, settings)),
       max_height_(height_ * texture_headroom(extent_, context)),
-      form_(settings.form) {}
+      form_(settings.form),
+      shortest_(shortest_wave(settings, context)) {}
 
 TextureExtent UvHeightMap::extent_of(const SurfaceMap& map, const HeightMap::Settings& settings) {
   // Two pixels are the shortest wave a picture can hold. A picture without slope has none.

@@ -20,7 +20,9 @@ namespace thimble::render {
 /// triangle. So a picture that is stretched in the file is felt stretched. Triangles without
 /// texture coordinates, or with coordinates that have no area, are smooth and in the surface, as
 /// white is. Where the height steps, at a seam at which the picture does not match, it is felt as a
-/// slope of kTextureSlopeMax behind the seam (MapFollower).
+/// slope of at most kTextureSlopeMax behind the seam (MapFollower). The slope turns so that the
+/// force along the surface changes by at most stiffness times path: at the depth d by 1 / d per
+/// metre. It is not finer than the loop can render (check_texture).
 class UvHeightMap {
  public:
   static constexpr std::string_view kGroup = HeightMap::kGroup;
@@ -41,10 +43,17 @@ class UvHeightMap {
   /// See ClosestPointStage. Real-time: safe.
   void touch_at(const ClosestSurfacePoint& closest, const driver::DeviceState& state,
                 SurfaceResponse& response) noexcept {
-    constexpr double kFlat = 1e-9;  // m; a flatter map is not felt [chosen]
+    const auto sample = [&](std::int32_t triangle, const Eigen::Vector3d& p_M) noexcept {
+      return map_->at(triangle, p_M);
+    };
+    constexpr double kFlat = 1e-9;  // m; a flatter map or touch is not felt [chosen]
+    const double height = std::max(height_, kFlat);
     const MapFollower::Felt felt =
-        follower_.follow(state.p_WT, closest, map_->at(response.contact.triangle, closest.p_M),
-                         map_->slope_max(), {.ramp = kTextureSlopeMax / std::max(height_, kFlat)});
+        follower_.follow(state.p_WT, closest, response.contact.triangle,
+                         sample(response.contact.triangle, closest.p_M), *map_, sample,
+                         {.ramp = kTextureSlopeMax / height,
+                          .bend = 1 / (height * std::max(response.contact.depth, kFlat)),
+                          .shortest = shortest_});
     // The gradient is by the tip already.
     ClosestSurfacePoint at_tip = closest;
     at_tip.J_MT.setIdentity();
@@ -73,6 +82,7 @@ class UvHeightMap {
   TextureExtent extent_;  // of the first height
   double max_height_;
   TextureForm form_;
+  double shortest_;  // m, of a wave that the loop can render
   MapFollower follower_;
 };
 

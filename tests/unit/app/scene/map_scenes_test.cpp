@@ -200,11 +200,27 @@ TEST_F(MapScenes, MistakesNamePlaceAndRemedy) {
       {"mesh: cube.obj, stiffness: 500, effects: [{texture: height_map, map: uv, image: grey.png, "
        "height: 0.0001, width: 0.01}]",
        "width: needs map: projected"},
+      {"mesh: cube.obj, stiffness: 500, effects: [{texture: height_map, map: uv, image: grey.png, "
+       "height: 0.0001}]",
+       "cube.obj: The texture coordinates of no triangle have an area, which the texture "
+       "height_map "
+       "with map: uv needs. Unwrap the mesh"},
   };
   for (const auto& [object, expected] : cases) {
     const std::string error = error_of(object);
     EXPECT_NE(error.find(expected), std::string::npos) << object << "\n" << error;
   }
+}
+
+TEST_F(MapScenes, UnreadablePicturesNameTheReason) {
+  const fs::path shut = write("shut.png", "");
+  fs::permissions(shut, fs::perms::none);
+  if (std::ifstream(shut)) GTEST_SKIP() << "this user may read every file";
+  const std::string error =
+      error_of("mesh: cube.obj, stiffness_map: {image: shut.png, min: 1, max: 9}");
+  EXPECT_NE(error.find("shut.png: it cannot be opened (Permission denied); check its permissions."),
+            std::string::npos)
+      << error;
 }
 
 TEST_F(MapScenes, ShapesHaveNoMaps) {

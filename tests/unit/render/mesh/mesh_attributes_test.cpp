@@ -97,8 +97,34 @@ TEST(MeshAttributes, ObjErrorsNameTheLine) {
             "beyond.obj:5: the face refers to texture coordinate 7; the file has 1.");
   EXPECT_EQ(refused("before.obj", face + "vt 0 0\nf 1/-2 2/1 3/1\n"),
             "before.obj:5: the face refers to texture coordinate -2; so far there are 1.");
-  EXPECT_EQ(refused("white.obj", "v 0 0 0 255 0 0\n"),
-            "white.obj:1: the colour of vertex 1 is not three numbers from 0 to 1.");
+  EXPECT_EQ(
+      refused("white.obj", "v 0 0 0 255 0 0\n"),
+      "white.obj:1: the colour of vertex 1 is not three numbers from 0 to 1. If the colours of "
+      "the file are from 0 to 255, divide them by 255, or export the mesh as PLY.");
+}
+
+std::string with_sevens(const std::string& a, const std::string& b, const std::string& c) {
+  return "v 0 0 0 " + a + "\nv 1 0 0 " + b + "\nv 1 1 0 " + c + "\nf 1 2 3\n";
+}
+
+TEST(MeshAttributes, ObjColoursMayHaveAnOpacityOrAWeight) {
+  const auto opacity = load("opacity.obj", with_sevens("0.25 0 0.5 1", "1 0 0 1", "0 1 0 1"));
+  ASSERT_EQ(opacity.attributes.colours.size(), 1U);
+  EXPECT_EQ(opacity.attributes.colours[0][0], Vector3d(0.25, 0, 0.5));
+  const auto weight = load("weight.obj", with_sevens("1 0.25 0 0.5", "1 1 0 0", "1 0 1 0"));
+  ASSERT_EQ(weight.attributes.colours.size(), 1U);
+  EXPECT_EQ(weight.attributes.colours[0][0], Vector3d(0.25, 0, 0.5));
+}
+
+TEST(MeshAttributes, ObjColoursWithTwoMeaningsAreRefused) {
+  const std::string both = refused("both.obj", with_sevens("1 0 0 1", "1 1 0 1", "1 0 0.5 1"));
+  EXPECT_EQ(
+      both,
+      "both.obj:1: vertices with 7 numbers may be x y z w r g b (w = 1) or x y z r g b a (a = "
+      "1), and here both fit. Write the colours as v x y z r g b, or export the mesh as PLY.");
+  EXPECT_NE(refused("neither.obj", with_sevens("0 0 0 0.5", "1 1 0 1", "1 0 1 1"))
+                .find("and here neither fits"),
+            std::string::npos);
 }
 
 TEST(MeshAttributes, BadAttributesDoNotMatterIfNotRead) {
@@ -140,10 +166,48 @@ TEST(MeshAttributes, PlyErrorsNameTheVertex) {
       refused("nan.ply",
               ply("property float s\nproperty float t\n", "0 0 0 0 0\n1 0 0 nan 0\n1 1 0 0 0\n")),
       "nan.ply: vertex 1 has a texture coordinate that is not a number between -1e6 and 1e6.");
-  EXPECT_EQ(refused("dark.ply", ply("property float red\nproperty float green\n"
-                                    "property float blue\n",
-                                    "0 0 0 -1 0 0\n1 0 0 0 0 0\n1 1 0 0 0 0\n")),
-            "dark.ply: vertex 0 has a colour that is not three numbers from 0 to 1.");
+  EXPECT_EQ(
+      refused("dark.ply", ply("property float red\nproperty float green\n"
+                              "property float blue\n",
+                              "0 0 0 -1 0 0\n1 0 0 0 0 0\n1 1 0 0 0 0\n")),
+      "dark.ply: vertex 0 has a colour that is not three numbers from 0 to 1. Write colours as "
+      "uchar from 0 to 255, or as float from 0 to 1.");
+}
+
+// As MeshLab writes coordinates of corners: a list in each face.
+std::string ply_with_face_list(const std::string& faces) {
+  return "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\n"
+         "property double z\nelement face 2\nproperty list uchar int vertex_indices\n"
+         "property list uchar float texcoord\nproperty int texnumber\nend_header\n"
+         "0 0 0\n1 0 0\n1 1 0\n0 1 0\n" +
+         faces;
+}
+
+TEST(MeshAttributes, PlyFacesMayHaveCoordinatesOfTheirOwn) {
+  const auto [mesh, attributes] =
+      load("wedge.ply", ply_with_face_list("3 0 1 2 6 0 0 0.5 0 0.5 0.25 0\n"
+                                           "3 0 2 3 6 0.75 0 1 0.5 0.75 1 0\n"));
+  ASSERT_EQ(attributes.uv.size(), 2U);
+  EXPECT_EQ(attributes.uv[0][2], Vector2d(0.5, 0.25));
+  EXPECT_EQ(attributes.uv[1][0], Vector2d(0.75, 0));
+  EXPECT_EQ(attributes.uv[1][2], Vector2d(0.75, 1));
+}
+
+TEST(MeshAttributes, PlyFacesWithoutCoordinatesHaveNone) {
+  const auto [mesh, attributes] =
+      load("some.ply", ply_with_face_list("3 0 1 2 6 0 0 0.5 0 0.5 0.25 0\n3 0 2 3 0 0\n"));
+  ASSERT_EQ(attributes.uv.size(), 2U);
+  EXPECT_TRUE(attributes.uv[1][0].hasNaN());
+}
+
+TEST(MeshAttributes, PlyErrorsNameTheFaceOfCoordinates) {
+  EXPECT_EQ(refused("short.ply", ply_with_face_list("3 0 1 2 6 0 0 0.5 0 0.5 0.25 0\n"
+                                                    "3 0 2 3 4 0 0 1 1 0\n")),
+            "short.ply: face 1 has 4 texture coordinates for 3 corners; texcoord needs two for "
+            "each. Export the mesh again, or as OBJ.");
+  EXPECT_EQ(refused("far.ply", ply_with_face_list("3 0 1 2 6 0 0 1e9 0 0.5 0.25 0\n"
+                                                  "3 0 2 3 0 0\n")),
+            "far.ply: face 0 has a texture coordinate that is not a number between -1e6 and 1e6.");
 }
 
 template <class Number>
@@ -190,10 +254,29 @@ TEST(MeshAttributes, GltfMirroredPartsKeepTheirCorners) {
   }
 }
 
-TEST(MeshAttributes, GltfErrorNamesTheAttribute) {
-  EXPECT_NE(refused("nan.gltf", gltf("", std::nanf("")))
-                .find("TEXCOORD_0 has a value that is not a number between -1e6 and 1e6"),
-            std::string::npos);
+TEST(MeshAttributes, GltfErrorNamesTheVertex) {
+  EXPECT_EQ(refused("nan.gltf", gltf("", std::nanf(""))),
+            "nan.gltf: TEXCOORD_0 of vertex 0 of a primitive has a value that is not a number "
+            "between -1e6 and 1e6. Unwrap the mesh again and export it.");
+  std::string bright = gltf("");
+  const std::string byte = R"("componentType":5121,"normalized":true)";
+  bright.replace(bright.find(byte), byte.size(), R"("componentType":5121)");
+  EXPECT_EQ(
+      refused("bright.gltf", bright),
+      "bright.gltf: COLOR_0 of vertex 0 of a primitive has a value that is not a number from 0 "
+      "to 1. Export colours as floats from 0 to 1, or as normalized integers.");
+}
+
+TEST(MeshAttributes, GltfRequiredTransformOfPicturesIsRefused) {
+  std::string bytes = gltf("");
+  bytes.insert(1, R"("extensionsRequired":["KHR_texture_transform"],)");
+  EXPECT_EQ(
+      refused("moved.gltf", bytes),
+      "moved.gltf: it requires the glTF extension KHR_texture_transform, which is not applied "
+      "to texture coordinates. Apply it in the program that made the file, and export the "
+      "mesh without it.");
+  // Without texture coordinates it does not matter.
+  EXPECT_TRUE(load_text("moved.gltf", bytes));
 }
 
 TEST(MeshAttributes, MeshIsThatOfTheOtherReader) {

@@ -6,9 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -17,193 +15,14 @@
 #include "surface/friction/bristle.h"
 #include "surface/texture/height_map.h"
 #include "thimble/render/build_object_touch.h"
+#include "unit/render/surface/mapped_slab.h"
 
 namespace thimble::render {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kStiffness = 800;
-constexpr double kHalf = 0.02;    // m, half the side of the slab
-constexpr double kThick = 0.02;   // m
-constexpr double kHeight = 3e-4;  // m, of the texture
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-driver::DeviceState at(const Vector3d& p_WT) {
-  driver::DeviceState state;
-  state.p_WT = p_WT;
-  state.dt = 1e-3;
-  return state;
-}
-
-struct Slab {
-  TriangleMesh mesh;
-  MeshAttributes attributes;
-};
-
-// Returns a slab with its upper face at z = 0, of squares of 5 mm: away from its sides the point of
-// the surface is straight above the tip with every tracker. `value(side, p)` gives the uv of the
-// corners of the upper face, with side 0 on the left of x = 0, 1 on the right; elsewhere they have
-// no area.
-template <class Value>
-Slab slab(const Value& value) {
-  Slab done;
-  auto& [mesh, attributes] = done;
-  constexpr int kCells = 8, kCorners = kCells + 1;
-  for (const double z : {-kThick, 0.0}) {
-    for (int row = 0; row < kCorners; ++row) {
-      for (int column = 0; column < kCorners; ++column) {
-        mesh.vertices.emplace_back(kHalf * (2.0 * column / kCells - 1),
-                                   kHalf * (2.0 * row / kCells - 1), z);
-      }
-    }
-  }
-  const auto number = [](int column, int row, bool top) {
-    return (top ? kCorners * kCorners : 0) + row * kCorners + column;
-  };
-  const auto quad = [&](int a, int b, int c, int d) {
-    mesh.triangles.push_back({a, b, c});
-    mesh.triangles.push_back({a, c, d});
-  };
-  for (const bool top : {true, false}) {
-    for (int row = 0; row < kCells; ++row) {
-      for (int column = 0; column < kCells; ++column) {
-        const int a = number(column, row, top), b = number(column + 1, row, top);
-        const int c = number(column + 1, row + 1, top), d = number(column, row + 1, top);
-        top ? quad(a, b, c, d) : quad(d, c, b, a);
-      }
-    }
-  }
-  const std::size_t top_triangles = 2 * kCells * kCells;
-  for (int i = 0; i < kCells; ++i) {
-    quad(number(i, 0, false), number(i + 1, 0, false), number(i + 1, 0, true), number(i, 0, true));
-    quad(number(i + 1, kCells, false), number(i, kCells, false), number(i, kCells, true),
-         number(i + 1, kCells, true));
-    quad(number(0, i + 1, false), number(0, i, false), number(0, i, true), number(0, i + 1, true));
-    quad(number(kCells, i, false), number(kCells, i + 1, false), number(kCells, i + 1, true),
-         number(kCells, i, true));
-  }
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    attributes.uv.emplace_back();
-    attributes.colours.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vector3d& p = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][k])];
-      attributes.uv[t][k] =
-          t < top_triangles ? value(t / 2 % kCells < kCells / 2 ? 0 : 1, p) : Vector2d(0, 0);
-      // From 0 on the left to 1 on the right.
-      attributes.colours[t][k] = {(p.x() + kHalf) / (2 * kHalf), 0, 0.5};
-    }
-  }
-  return done;
-}
-
-// The picture covers the upper face once.
-Vector2d once(std::size_t, const Vector3d& p) {
-  return {(p.x() + kHalf) / (2 * kHalf), (p.y() + kHalf) / (2 * kHalf)};
-}
-
-// A ramp to the right, which is 1/32 per pixel. A cubic spline reproduces it exactly, but for the
-// two pixels next to its step.
-std::shared_ptr<const HeightImage> ramp() {
-  std::vector<float> values;
-  for (int row = 0; row < 32; ++row) {
-    for (int column = 0; column < 32; ++column) values.push_back(static_cast<float>(column) / 32);
-  }
-  return std::make_shared<const HeightImage>(32, 32, values);
-}
-
-std::shared_ptr<const HeightImage> sine(int side) {
-  std::vector<float> values;
-  for (int row = 0; row < side; ++row) {
-    for (int column = 0; column < side; ++column) {
-      values.push_back(static_cast<float>(0.5 + 0.4 * std::sin(kTurn * column / side)));
-    }
-  }
-  return std::make_shared<const HeightImage>(side, side, values);
-}
-
-// Black on the left, white on the right.
-std::shared_ptr<const HeightImage> halves() {
-  std::vector<float> values;
-  for (int i = 0; i < 32 * 32; ++i) values.push_back(i % 32 < 16 ? 0.0F : 1.0F);
-  return std::make_shared<const HeightImage>(32, 32, values);
-}
-
-EffectContext context() {
-  EffectContext known;
-  known.force_max = 5;
-  known.surface_stiffness = kStiffness;
-  return known;
-}
-
-SurfaceChoice plain() {
-  return {.spring = {.stiffness = kStiffness, .damping = 0}};
-}
-
-template <class Stage>
-EffectPlan effect(const typename Stage::Settings& settings) {
-  static constexpr EffectKind kKind = effect_kind<Stage>();
-  if constexpr (requires { Stage::builder(settings, context()); }) {
-    return {&kKind, Stage::builder(settings, context())};
-  } else {
-    return {&kKind, [settings]() -> std::unique_ptr<AnyStage> {
-              return std::make_unique<AnyStageOf<Stage>>(Stage(settings, context()));
-            }};
-  }
-}
-
-SurfaceChoice textured(const Slab& on, const std::shared_ptr<const HeightImage>& image,
-                       double height = kHeight) {
-  HeightMap::Settings settings;
-  settings.image = image;
-  settings.height = height;
-  settings.map = HeightMap::Mapping::kUv;
-  SurfaceChoice surface = plain();
-  surface.effects.push_back(effect<HeightMap>(settings));
-  surface.maps = make_surface_maps(on.mesh, on.attributes).value();
-  return surface;
-}
-
-std::unique_ptr<ObjectTouch> build(const Slab& on, const SurfaceChoice& surface,
-                                   const ContactChoice& contact = {}) {
-  auto touch = build_object_touch(on.mesh, contact, surface);
-  EXPECT_TRUE(touch) << (touch ? "" : touch.error().message);
-  return touch ? std::move(touch).value() : nullptr;
-}
-
-std::string error_of(const Slab& on, const SurfaceChoice& surface) {
-  const auto touch = build_object_touch(on.mesh, {}, surface);
-  return touch ? "built" : touch.error().message;
-}
-
-// Returns the force at a place of the upper face and a depth, straight from above.
-Vector3d press(ObjectTouch& touch, double x, double y, double depth) {
-  touch.update(at({x, y, 0.01}));
-  touch.update(at({x, y, 1e-5}));
-  return touch.update(at({x, y, -depth})).f_T_W;
-}
-
-std::vector<ContactChoice> all_contacts() {
-  std::vector<ContactChoice> all;
-  for (const TrackerChoice tracker :
-       {TrackerChoice::kEdgePlanes, TrackerChoice::kOffset, TrackerChoice::kPacked,
-        TrackerChoice::kNormalProjection, TrackerChoice::kGodObject}) {
-    ContactChoice choice;
-    choice.tracker = tracker;
-    all.push_back(choice);
-  }
-  ContactChoice ball;
-  ball.tip_radius = 0.002;
-  all.push_back(ball);
-  return all;
-}
-
-// Presses by the radius of the tip above the surface.
-Vector3d press(ObjectTouch& touch, const ContactChoice& contact, double x, double y, double depth) {
-  return press(touch, x, y, depth - contact.tip_radius);
-}
+using namespace mapped_slab;
 
 TEST(SurfaceMap, RampIsFeltInClosedForm) {
   const Slab on = slab(once);
@@ -276,12 +95,7 @@ TEST(SurfaceMap, OnePixelIsAnEvenHeight) {
   EXPECT_NEAR((f_W - Vector3d(0, 0, kStiffness * (0.001 - 0.75 * kHeight))).norm(), 0, 1e-12);
 }
 
-// The picture does not match at x = 0: the height steps by half of it there.
-Vector2d torn(std::size_t side, const Vector3d& p) {
-  return {(p.x() + kHalf) / (4 * kHalf) + (side == 0 ? 0.1 : 0.4), (p.y() + kHalf) / (2 * kHalf)};
-}
-
-TEST(SurfaceMap, SeamIsFeltAsASlopeOf45Degrees) {
+TEST(SurfaceMap, SeamIsFeltAsASlope) {
   const Slab on = slab(torn);
   auto touch = build(on, textured(on, ramp(), 0.0005));
   constexpr double kStep = 1e-5, kDepth = 0.002;
@@ -306,26 +120,6 @@ TEST(SurfaceMap, SeamIsFeltAsASlopeOf45Degrees) {
   }
 }
 
-struct Work {
-  double net = 0, gross = 0;
-};
-
-// Returns the work along a path with the mean of the forces at both ends of each step.
-template <class Way>
-Work work_along(ObjectTouch& touch, const Way& way, int steps) {
-  Work work;
-  Vector3d before = touch.update(at(way(0.0))).f_T_W;
-  for (int i = 1; i <= steps; ++i) {
-    const Vector3d step = way(double(i) / steps) - way(double(i - 1) / steps);
-    const Vector3d f_W = touch.update(at(way(double(i) / steps))).f_T_W;
-    const double power = (f_W + before).dot(step) / 2;
-    work.net += power;
-    work.gross += std::abs(power);
-    before = f_W;
-  }
-  return work;
-}
-
 // Across the seam and back, deeper on the way back, ending at its start.
 Vector3d around_seam(double s) {
   return {-0.006 * std::cos(kTurn * s), 0.004 * std::sin(kTurn * s),
@@ -340,13 +134,6 @@ TEST(SurfaceMap, ClosedPathOverASeamDoesNoWork) {
   std::printf("seam: %.2e of the work in and out\n", work.net / work.gross);
   EXPECT_GT(work.gross, 1e-4);
   EXPECT_LT(std::abs(work.net), 1e-4 * work.gross);
-}
-
-SurfaceChoice stiff_by_colour(const Slab& on, double black) {
-  SurfaceChoice surface = plain();
-  surface.maps = make_surface_maps(on.mesh, on.attributes).value();
-  surface.stiffness_map = MapChoice{.channel = 0, .black = black, .white = 1};
-  return surface;
 }
 
 TEST(SurfaceMap, StiffnessFollowsAColourInClosedForm) {

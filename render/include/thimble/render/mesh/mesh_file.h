@@ -59,10 +59,12 @@ THIMBLE_EXPORT driver::Result<TriangleMesh> load_mesh(const std::filesystem::pat
                                                       MeshFileInfo* info = nullptr);
 
 /// Reads a mesh file as load_mesh does, and its texture coordinates and vertex colours: of OBJ (vt,
-/// and colours after the coordinates of v), PLY (s and t, u and v, or texture_u and texture_v; red,
-/// green and blue) and glTF (TEXCOORD_0, COLOR_0). Other formats have none. The mesh is
-/// bit-identical to that of load_mesh. The error also reports a texture coordinate or colour that
-/// is not a finite number or does not exist. Real-time: never from the servo thread.
+/// and colours after the coordinates of v), PLY (s and t, u and v, or texture_u and texture_v of
+/// vertices, or the list texcoord of faces; red, green and blue) and glTF (TEXCOORD_0, COLOR_0).
+/// Other formats have none. The mesh is bit-identical to that of load_mesh. The error also reports
+/// a texture coordinate or colour that is not a finite number or does not exist, colours of an OBJ
+/// file with two possible meanings, and a required KHR_texture_transform. Real-time: never from the
+/// servo thread.
 THIMBLE_EXPORT driver::Result<TriangleMesh> load_mesh_with_attributes(
     const std::filesystem::path& file, MeshAttributes& attributes, MeshFileInfo* info = nullptr);
 

@@ -28,12 +28,13 @@ using Json = nlohmann::json;
 
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
+constexpr const char* kTextureTransform = "KHR_texture_transform";
 
 // Required extensions that are read, or that do not change the shape; in addition to those of
 // materials.
 constexpr std::array<std::string_view, 12> kKnownExtensions{kInstancing,
                                                             "KHR_mesh_quantization",
-                                                            "KHR_texture_transform",
+                                                            kTextureTransform,
                                                             "KHR_texture_basisu",
                                                             "EXT_texture_webp",
                                                             "EXT_texture_avif",
@@ -98,6 +99,8 @@ class GltfReader {
   };
 
   std::optional<Error> check_extensions() const;
+  // Returns whether the file requires that texture coordinates are transformed.
+  bool places_textures() const;
   driver::Result<std::vector<std::size_t>> roots() const;
   std::optional<Error> add_node(const Json& node, const Affine3d& place);
   std::optional<Error> add_primitive(const Json& primitive, const Json* weights,
@@ -185,6 +188,14 @@ std::optional<Error> GltfReader::check_extensions() const {
     }
   }
   return std::nullopt;
+}
+
+bool GltfReader::places_textures() const {
+  const Json* const required = json_member(gltf_, "extensionsRequired");
+  const Json& names = elements_of(required);
+  return std::any_of(names.begin(), names.end(), [](const Json& name) {
+    return name.is_string() && name.get_ref<const std::string&>() == kTextureTransform;
+  });
 }
 
 driver::Result<std::vector<std::size_t>> GltfReader::roots() const {
@@ -384,10 +395,16 @@ std::optional<Error> GltfReader::read_attributes(const Json& attributes, Primiti
   const auto uv = read("TEXCOORD_0", {2}, width);
   if (!uv) return uv.error();
   // Written so that NaN is refused.
-  for (const double one : *uv) {
-    if (!(std::abs(one) <= kTextureCoordinateMax)) {
-      return damaged("TEXCOORD_0 has a value that is not a number between -1e6 and 1e6");
-    }
+  for (std::size_t i = 0; i < uv->size(); ++i) {
+    if (std::abs((*uv)[i]) <= kTextureCoordinateMax) continue;
+    return Error{"TEXCOORD_0 of vertex " + std::to_string(i / 2) +
+                 " of a primitive has a value that is not a number between -1e6 and 1e6. Unwrap "
+                 "the mesh again and export it."};
+  }
+  if (!uv->empty() && places_textures()) {
+    return Error{std::string("it requires the glTF extension ") + kTextureTransform +
+                 ", which is not applied to texture coordinates. Apply it in the program that made "
+                 "the file, and export the mesh without it."};
   }
   if (!uv->empty()) {
     const auto of = [&](std::int32_t vertex) {
@@ -399,10 +416,11 @@ std::optional<Error> GltfReader::read_attributes(const Json& attributes, Primiti
   }
   const auto colours = read("COLOR_0", {3, 4}, width);
   if (!colours) return colours.error();
-  for (const double one : *colours) {
-    if (!(one >= 0 && one <= 1)) {
-      return damaged("COLOR_0 has a value that is not a number from 0 to 1");
-    }
+  for (std::size_t i = 0; i < colours->size(); ++i) {
+    if ((*colours)[i] >= 0 && (*colours)[i] <= 1) continue;
+    return Error{"COLOR_0 of vertex " + std::to_string(i / width) +
+                 " of a primitive has a value that is not a number from 0 to 1. Export colours as "
+                 "floats from 0 to 1, or as normalized integers."};
   }
   if (!colours->empty()) {
     const auto of = [&](std::int32_t vertex) {
