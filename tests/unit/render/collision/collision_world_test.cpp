@@ -199,7 +199,7 @@ TEST(CollisionWorld, TwoPlatesThatFlyAtEachOtherDoNotPass) {
 }
 
 TEST(CollisionWorld, EnergyNeverGrowsWithoutAHand) {
-  const int scenes = support::long_form() ? 1000 : 100;
+  const int scenes = support::long_form() ? 1000 : 40;
   Random random(scenes);
   double grown = 0;
   for (int i = 0; i < scenes; ++i) {
