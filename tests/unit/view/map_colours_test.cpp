@@ -18,7 +18,8 @@ DrawnObject mapped_box() {
   DrawnObject object;
   object.name = "pad";
   object.mesh = support::box({0.01, 0.02, 0.03});
-  object.map = {.quantity = "stiffness", .unit = "N/m", .min = 250, .max = 800, .parts = 3};
+  object.map = {
+      .quantity = "stiffness", .unit = "N/m", .min = 250, .max = 800, .parts = 3, .values = {}};
   for (const auto& triangle : object.mesh.triangles) {
     double low = 1;
     for (const auto v : triangle) {
@@ -93,7 +94,7 @@ TEST(MapColours, LegendGivesRangeAndUnit) {
   DrawnScene scene;
   scene.objects = {mapped_box(), mapped_box()};
   scene.objects[1].map = {
-      .quantity = "friction factor", .unit = "", .min = 0, .max = 1.5, .parts = 1};
+      .quantity = "friction factor", .unit = "", .min = 0, .max = 1.5, .parts = 1, .values = {}};
   const Legend legend = legend_of(scene, {}, {});
   ASSERT_EQ(legend.maps.size(), 2U);
   EXPECT_EQ(legend.maps[0].text, "pad: stiffness");
