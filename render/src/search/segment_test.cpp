@@ -22,8 +22,10 @@ __m128d half_of(const double* v, std::size_t half) noexcept {
   return half == 0 ? _mm_loadu_pd(v) : _mm_load_sd(v + 2);
 }
 
+// Stores two numbers, cut to integers. All beyond the lattice are equivalent. The upper limit is
+// not 2^31 - 1, which SIMDe's conversion changes to -2^31 (sse2_test).
 void store_whole(__m128d u, std::size_t half, std::array<std::int32_t, 4>& to) noexcept {
-  const __m128d most = _mm_set1_pd(2 * kLatticeHalf - 1), least = _mm_set1_pd(-2 * kLatticeHalf);
+  const __m128d most = _mm_set1_pd(2 * kLatticeHalf - 2), least = _mm_set1_pd(-2 * kLatticeHalf);
   const __m128i whole = _mm_cvttpd_epi32(_mm_max_pd(_mm_min_pd(u, most), least));
   _mm_storel_epi64(reinterpret_cast<__m128i*>(to.data() + 2 * half), whole);
 }

@@ -69,7 +69,8 @@ Input draw(support::Random& random) {
 // The hashes were stored on x86-64, where these are the processor's own instructions.
 // tests/arm64.sh compares those of SIMDe on 64-bit ARM. Not compared: minimum and maximum of
 // doubles of which one is NaN or both are zeros of other signs, and truncation of doubles from
-// 2^31 - 1 to 2^31. There SIMDe differs, and no caller depends on it.
+// 2^31 - 1 to 2^31, which SIMDe makes -2^31. There SIMDe differs, and no caller depends on it:
+// SegmentSieve limits its numbers to 2^31 - 2 (segment_sieve_test).
 
 TEST(Sse2, FloatFunctionsGiveTheStoredHash) {
   support::Random random(std::uint64_t{2});
