@@ -309,6 +309,7 @@ ExitCode run_one(RunContext& context, session::Session& session,
   }
   const ExitCode ended = end_of(session, desk && desk->ended());
   if (ended != kExitDone) return ended;
+  if (next != nullptr && next->failed()) return kExitBadInput;
   if (const auto read = session.setup().objects().check_pages(session.scene()); !read) {
     return report_error(read.error(), kExitBadInput);
   }

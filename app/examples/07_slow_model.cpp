@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "thimble/driver/snapshot.h"
-#include "thimble/render/multirate/model_slot.h"
+#include "thimble/render/multirate/local_model.h"
 #include "thimble/render/multirate/model_touch.h"
 #include "thimble/scene/simulated_device.h"
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# A run that restarts continues with its last good scene while a file of the scene is spoiled.
+# A run that restarts continues with its last good scene while the scene or a picture is spoiled, and ends with an error if a
+# mesh is.
 source "$(dirname "$0")/expect.sh" "$@"
 export XDG_STATE_HOME=$work/state
 unset DISPLAY WAYLAND_DISPLAY
@@ -33,6 +34,13 @@ for clock in paced wall; do
     wait_for test -e run-2.h5
     echo spoiled >$spoiled
     wait_for grep -q "^thimble: .*$spoiled" out
+    if [ $spoiled = tissue.obj ]; then # a mesh is read again for each run, so the loop ends
+      wait $pid
+      status=$?
+      expect 0 '^2$' echo $status
+      cp good $spoiled
+      continue
+    fi
     restarts
     restarts
     expect 0 "^1$" grep -c "^thimble: .*$spoiled" out # reported once

@@ -8,7 +8,6 @@
 
 #include "thimble/driver/device_state.h"
 #include "thimble/render/multirate/local_model.h"
-#include "thimble/render/multirate/model_slot.h"
 
 namespace thimble::support {
 

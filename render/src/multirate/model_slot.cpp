@@ -1,4 +1,4 @@
-#include "thimble/render/multirate/model_slot.h"
+#include "thimble/render/multirate/local_model.h"
 
 #include <string>
 

@@ -57,7 +57,8 @@ bool NextRun::prepare(const std::filesystem::path& scene, bool continues) {
 bool NextRun::prepare_as_read() {
   auto prepared = Session::prepare_like(*session_, session_->setup().seed());
   if (!prepared) {
-    scene::logger().error("{}", prepared.error().message);
+    scene::logger().error("The loop ends, because the scene cannot be built again as it was: {}",
+                          prepared.error().message);
     return false;
   }
   next_ = std::move(prepared).value();
@@ -116,7 +117,10 @@ std::unique_ptr<Session> NextRun::take(driver::ServoEnd end, bool stop) {
   const bool loops = loop_ && end == driver::ServoEnd::kDone;
   if (!fault) prepare_requested(loops);
   pause_ = end == driver::ServoEnd::kDone && shared.pause_asked();
-  if (!next_ && loops && !prepare(scene_, true) && !prepare_as_read()) return nullptr;
+  if (!next_ && loops && !prepare(scene_, true) && !prepare_as_read()) {
+    failed_ = true;
+    return nullptr;
+  }
   session_ = nullptr;
   return std::move(next_);
 }

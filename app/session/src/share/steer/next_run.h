@@ -43,12 +43,16 @@ class THIMBLE_EXPORT NextRun {
   void step(bool stop);
   /// Returns whether the run restarts when it has ended, as asked last.
   bool loops() const noexcept { return loop_; }
+  /// Returns whether a loop has ended because its files can no longer be used: a mesh is read again
+  /// for each run.
+  bool failed() const noexcept { return failed_; }
   /// Returns the flag that ends the current run.
   const std::atomic<bool>& ended() const noexcept { return end_; }
   /// Returns the next run after the current one has ended with `end`: the prepared one, the last
   /// one that a viewer requested, or the same scene if `loops`. If its files can no longer be used,
-  /// the loop continues with the scene as read before. Null: none. An error of preparation is
-  /// logged and reported to viewers. The current run is closed to requests of viewers.
+  /// the loop continues with the scene as read before, unless a mesh has changed too. Null: none.
+  /// An error of preparation is logged and reported to viewers. The current run is closed to
+  /// requests of viewers.
   std::unique_ptr<Session> take(driver::ServoEnd end, bool stop);
 
  private:
@@ -73,6 +77,7 @@ class THIMBLE_EXPORT NextRun {
   std::string last_error_;  // Last logged error of a preparation; empty after a success.
   std::string notice_;      // Reason why the last request is not the next run; empty if it is.
   std::atomic<bool> end_{false};
+  bool failed_ = false;
 };
 
 }  // namespace thimble::session

@@ -8,7 +8,6 @@
 #include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/multirate/local_model.h"
-#include "thimble/render/multirate/model_slot.h"
 #include "thimble/render/object_touch.h"
 
 namespace thimble::render {
