@@ -59,7 +59,7 @@ set(same_version "thimble (= ${PROJECT_VERSION})")
 # Below 40 MB with all dependencies (tests/program/package_test.sh). Only recommended: scans that scenes name (unpacked on
 # first use), plots, the libraries of report pages, and the other packages.
 thimble_package(thimble COMPONENT program LIBRARIES
-  RECOMMENDS "libcgal-demo, gnuplot-nox, fonts-dejavu-core, libjs-three, libjs-dygraphs, thimble-viewer, thimble-mesh-formats"
+  RECOMMENDS "libcgal-demo, gnuplot-nox, fonts-dejavu-core, libjs-three, libjs-dygraphs, thimble-viewer, thimble-mesh-formats, thimble-bodies"
   SUGGESTS "thimble-studies, thimble-compat, thimble-ros2, python3-thimble"
   DESCRIPTION
 "feel virtual objects through a force-feedback arm, real or simulated
@@ -99,6 +99,13 @@ if(TARGET thimble_mesh_formats)
   thimble_package(thimble-mesh-formats COMPONENT mesh_formats LIBRARIES DEPENDS "${same_version}" DESCRIPTION
 "more mesh formats for Thimble
 Readers for meshes in COLLADA (DAE), AMF, 3DS and glTF 1.")
+endif()
+
+if(TARGET thimble_bodies)
+  thimble_package(thimble-bodies COMPONENT bodies LIBRARIES DEPENDS "${same_version}" DESCRIPTION
+"bodies that meet in scenes of Thimble
+Collisions of the objects of a scene that move, and joints between them, by
+the Bullet library.")
 endif()
 
 if(TARGET thimble_compat_libraries)

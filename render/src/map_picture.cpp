@@ -9,7 +9,6 @@
 #include "surface/map/surface_map.h"
 #include "surface/map/surface_maps.h"
 #include "surface/map/triangle_grid.h"
-#include "surface/texture/uv_height_map.h"
 #include "thimble/render/effect/stage_list.h"
 
 namespace thimble::render {
@@ -40,10 +39,10 @@ std::optional<Shown> shown_height(const SurfaceChoice& surface) {
     const auto build = effect.build.on(surface.maps);
     if (!build) continue;
     const std::unique_ptr<AnyStage> stage = (*build)();
-    const auto* height = dynamic_cast<const AnyStageOf<UvHeightMap>*>(stage.get());
-    if (height == nullptr) continue;
+    const HeightOfStage height = stage->drawn_height();
+    if (!height.map) continue;
     constexpr double kMm = 1e3;
-    return Shown{height->stage().map(), "height", "mm", -kMm * height->stage().height(), 0};
+    return Shown{height.map, "height", "mm", -kMm * height.height, 0};
   }
   return {};
 }

@@ -28,7 +28,7 @@ if [ -n "${THIMBLE_LONG:-}" ] && can_make_bare; then
   cp "$work"/*.deb "$bare/root/"
   cp -r "$here/newcomers" "$bare/root/"
   inside 'apt-get update -q'
-  inside 'cd /root && apt-get install -y -q ./thimble_*.deb ./thimble-{viewer,studies,compat,mesh-formats}_*.deb \
+  inside 'cd /root && apt-get install -y -q ./thimble_*.deb ./thimble-{viewer,studies,compat,mesh-formats,bodies}_*.deb \
     $(for deb in thimble_*.deb thimble-viewer_*.deb; do dpkg-deb -f $deb Recommends; done | tr -d , | tr " " "\n" | grep -v ^thimble) ffmpeg'
   inside 'cd /root && apt-get install -y -q --no-install-recommends ./libthimble-dev_*.deb g++ cmake make hdf5-tools'
   if ls "$bare"/root/python3-thimble_*.deb >/dev/null 2>&1; then

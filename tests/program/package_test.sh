@@ -36,7 +36,7 @@ holds() {  # DEB FILE
   grep -q " \./$2\( -> .*\)\?$" "$1.contents" || fail "$(basename "$1") has no $2"
 }
 made=$(cd "$work" && ls -- *.deb | cut -d _ -f 1 | LC_ALL=C sort | tr '\n' ' ')
-[[ $made == "libthimble-dev "* && ${made/python3-thimble /} == *"thimble thimble-compat thimble-mesh-formats "* &&
+[[ $made == "libthimble-dev "* && ${made/python3-thimble /} == *"thimble thimble-bodies thimble-compat thimble-mesh-formats "* &&
   $made == *"thimble-studies thimble-viewer " ]] || fail "the packages are $made"
 # PACKAGE FILE, one of each part.
 while read -r package file; do
@@ -59,6 +59,7 @@ thimble-studies usr/share/man/man1/thimble-studies.1.gz
 thimble-compat usr/lib/thimble/compat/libHD.so.3
 thimble-compat usr/lib/thimble/compat/libdhd.so.3
 thimble-mesh-formats usr/lib/thimble/thimble-mesh-formats.so
+thimble-bodies usr/lib/thimble/thimble-bodies.so
 END
 manual() { dpkg-deb --fsys-tarfile "$(deb "$1")" | tar -xO "./usr/share/man/man1/$1.1.gz" | zcat; }  # PACKAGE
 for line in 'thimble \.SS study' 'thimble See thimble\\-studies(1)' 'thimble See thimble\\-viewer(1)' 'thimble-studies \.SS study friction' \
@@ -101,7 +102,7 @@ for module in $needed pkg-config thimble; do
   grep -qE "(^|, )$library( |,|$)" asked || fail "libthimble-dev does not ask for $library: $(cat asked)"
 done
 dpkg-deb --field "$program" Recommends >asked
-for package in libcgal-demo gnuplot-nox libjs-three libjs-dygraphs thimble-viewer thimble-mesh-formats; do
+for package in libcgal-demo gnuplot-nox libjs-three libjs-dygraphs thimble-viewer thimble-mesh-formats thimble-bodies; do
   grep -qE "(^| )$package(,|$)" asked || fail "thimble does not recommend $package"
 done
 dpkg-deb --field "$(deb thimble-viewer)" Recommends | grep -q libegl-mesa0 || fail "thimble-viewer does not recommend libegl-mesa0"
@@ -155,10 +156,11 @@ lacking thimble-viewer view recording.h5
 lacking thimble-viewer view no_such_run
 ends=1 lacking thimble-compat exec true
 printf x >mesh.dae && lacking thimble-mesh-formats mesh mesh.dae
+lacking thimble-bodies run dominoes --no-view
 run_alone run water_balloon --duration 0.2 --no-view --record alone.h5 --report alone_report >said 2>&1 ||
   fail "thimble alone does not run a scene: $(cat said)"
 [ -s alone.h5 ] && [ -s alone_report/report.json ] || fail "thimble alone leaves no recording and no report: $(cat said)"
-for package in viewer studies compat mesh-formats; do dpkg-deb -x "$(deb thimble-$package)" "$alone"; done
+for package in viewer studies compat mesh-formats bodies; do dpkg-deb -x "$(deb thimble-$package)" "$alone"; done
 run_alone --help >help_of_all
 ! grep -qE '\(package ' <(sed -n '/^Subcommands:/,/^$/p' help_of_all) || fail "with all packages the help lists: $(cat help_of_all)"
 while read -r command; do
@@ -236,7 +238,7 @@ in_bare 'thimble doctor' || true  # no arm is plugged in
 grep -q '^advice .*meshes' log || fail "without the scans the doctor said: $(cat log)"
 
 echo "Installing what the packages recommend ..."
-inside 'cd /root && apt-get install -y -q ./thimble_*.deb ./thimble-{viewer,studies,compat,mesh-formats}_*.deb \
+inside 'cd /root && apt-get install -y -q ./thimble_*.deb ./thimble-{viewer,studies,compat,mesh-formats,bodies}_*.deb \
   $(for deb in thimble_*.deb thimble-viewer_*.deb; do dpkg-deb -f $deb Recommends; done | tr -d , | tr " " "\n" | grep -v ^thimble)'
 if ls "$bare"/root/python3-thimble_*.deb >/dev/null 2>&1; then
   inside 'apt-get install -y -q --no-install-recommends ./root/python3-thimble_*.deb'

@@ -11,6 +11,7 @@
 
 #include "body/motion/mass_properties.h"
 #include "collision/convex_pieces.h"
+#include "math/elementary.h"
 
 namespace thimble::render {
 namespace {
@@ -129,7 +130,7 @@ driver::Result<ColliderSet> collider_of(const SolidToCollide& solid, const Colli
       const auto filled = mass_properties({collider.points, solid.mesh_W->triangles}, 1);
       if (!filled) return filled.error();
       collider.form = ColliderForm::kSphere;
-      collider.size = Vector3d::Constant(std::cbrt(3 * filled->volume / (4 * std::numbers::pi)));
+      collider.size = Vector3d::Constant(math::cbrt(3 * filled->volume / (4 * std::numbers::pi)));
       collider.p = filled->p_WC;
       collider.points.clear();
       break;

@@ -143,14 +143,14 @@ void CollisionWorld::step(double step) noexcept {
     state.f_W += settings.mass.mass * settings.gravity_W;
     // Damping as the force that has its effect over the step.
     if (settings.damping > 0) {
-      const double fade = std::expm1(-settings.damping / settings.mass.mass * step);
+      const double fade = math::expm1(-settings.damping / settings.mass.mass * step);
       state.f_W += settings.mass.mass * fade / step * state.v_W;
     }
     if (settings.angular_damping > 0) {
       Vector3d omega_B = state.q_WB.conjugate() * state.omega_W;
       for (int k = 0; k < 3; ++k) {
         const double inertia = settings.mass.inertia[k];
-        omega_B[k] *= inertia * std::expm1(-settings.angular_damping / inertia * step) / step;
+        omega_B[k] *= inertia * math::expm1(-settings.angular_damping / inertia * step) / step;
       }
       state.tau_W += state.q_WB * omega_B;
     }

@@ -158,10 +158,14 @@ driver::Result<std::vector<std::size_t>> arms_of(std::span<const Recording> reco
 
 namespace {
 
+/// Returns whether the run of a recording had several arms.
+bool of_several(const Recording& recording) {
+  return !recording.info.arm_in_scene.empty();
+}
+
 /// Loads the scene of a recording with the options of its run.
 driver::Result<scene::Scene> load_scene_of(const Recording& recording,
-                                           const std::filesystem::path& file) {
-  const bool several = !recording.info.arm_in_scene.empty();
+                                           const std::filesystem::path& file, bool several) {
   const auto choices = run_choices(recording.info.options);
   if (!choices) return choices.error();
   auto scene = scene::load_scene(file, {.arm = several ? std::string() : recording.info.arm_file,
@@ -187,7 +191,7 @@ driver::Result<Replay> replay_single(const Recording& recording, const std::stri
                                      ReplayWatch* watch) {
   const auto file = scene_of(recording, scene_name);
   if (!file) return file.error();
-  const auto scene = load_scene_of(recording, *file);
+  const auto scene = load_scene_of(recording, *file, false);
   if (!scene) return scene.error();
   const auto objects = build(*scene, watch);
   if (!objects) return objects.error();
@@ -226,7 +230,7 @@ driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> r
   }
   const auto file = scene_of(recordings.front(), scene_name);
   if (!file) return file.error();
-  const auto scene = load_scene_of(recordings.front(), *file);
+  const auto scene = load_scene_of(recordings.front(), *file, true);
   if (!scene) return scene.error();
   const auto order = arms_of(recordings, *scene, *file);
   if (!order) return order.error();
@@ -259,7 +263,7 @@ std::string unhashed_files(const Recording& recording, const std::string& scene)
   if (!recording.info.file_hashes.empty()) return {};
   const auto file = scene_of(recording, scene);
   if (!file) return {};
-  const auto read = load_scene_of(recording, *file);
+  const auto read = load_scene_of(recording, *file, of_several(recording));
   if (!read || read->inputs.empty()) return {};
   std::string names;
   for (const std::filesystem::path& input : read->inputs) {
@@ -304,7 +308,7 @@ driver::Result<void> check_repeatable(const Recording& recording, const std::str
     return driver::Error{arm.string() + " has changed since the recording."};
   }
   if (!recording.info.file_hashes.empty()) {
-    const auto read = load_scene_of(recording, *file);
+    const auto read = load_scene_of(recording, *file, of_several(recording));
     if (!read) return read.error();
     auto same = scene::check_file_hashes(recording.info.file_hashes, read->inputs);
     if (!same) return same;

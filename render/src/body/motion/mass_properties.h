@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 
@@ -26,11 +27,12 @@ struct MassProperties {
 /// density: exact for the polyhedron, a sum over its triangles. The error states that the mass is
 /// not positive or that the mesh encloses no volume (open, flat or inside out). Real-time: never
 /// from the servo thread.
-driver::Result<MassProperties> mass_properties(const TriangleMesh& mesh, double mass);
+THIMBLE_EXPORT driver::Result<MassProperties> mass_properties(const TriangleMesh& mesh,
+                                                              double mass);
 
 /// Turns B to axes of a symmetric shape (a rotation to W), in the order of their inertia, if these
 /// are principal axes up to 1e-9. Only where several axes are equally good does B change by more
 /// than signs and order. Real-time: never from the servo thread.
-void prefer_axes(const Eigen::Matrix3d& axes_W, MassProperties& properties);
+THIMBLE_EXPORT void prefer_axes(const Eigen::Matrix3d& axes_W, MassProperties& properties);
 
 }  // namespace thimble::render

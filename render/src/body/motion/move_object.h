@@ -23,8 +23,9 @@ THIMBLE_EXPORT driver::Result<std::unique_ptr<ObjectTouch>> move_object(
 /// Returns the motion of an object with six degrees of freedom, with its mass and first velocities,
 /// for all kinds of motion. `axes_W` are those of a symmetric shape (prefer_axes); null for a mesh.
 /// Errors and time: as `move_object`.
-driver::Result<RigidMotion> rigid_motion_of(const TriangleMesh& mesh_W, const MotionChoice& choice,
-                                            const Eigen::Matrix3d* axes_W = nullptr);
+THIMBLE_EXPORT driver::Result<RigidMotion> rigid_motion_of(const TriangleMesh& mesh_W,
+                                                           const MotionChoice& choice,
+                                                           const Eigen::Matrix3d* axes_W = nullptr);
 
 /// An object that several hands touch: one force law per hand, and the shared body.
 struct SharedObject {

@@ -46,13 +46,13 @@ class UvHeightMap {
     const auto sample = [&](std::int32_t triangle, const Eigen::Vector3d& p_M) noexcept {
       return map_->at(triangle, p_M);
     };
-    constexpr double kFlat = 1e-9;  // m; a flatter map or touch is not felt [chosen]
-    const double height = std::max(height_, kFlat);
+    constexpr double kFlatTouch = 1e-9;  // m; a flatter map or touch is not felt [chosen]
+    const double height = std::max(height_, kFlatTouch);
     const MapFollower::Felt felt =
         follower_.follow(state.p_WT, closest, response.contact.triangle,
                          sample(response.contact.triangle, closest.p_M), *map_, sample,
                          {.ramp = kTextureSlopeMax / height,
-                          .bend = 1 / (height * std::max(response.contact.depth, kFlat)),
+                          .bend = 1 / (height * std::max(response.contact.depth, kFlatTouch)),
                           .shortest = shortest_});
     // The gradient is by the tip already.
     ClosestSurfacePoint at_tip = closest;

@@ -11,6 +11,14 @@
 
 namespace thimble::render {
 
+class SurfaceMap;
+
+/// A height over a surface by a picture on its texture coordinates, for drawing.
+struct HeightOfStage {
+  std::shared_ptr<const SurfaceMap> map;  ///< Null: the stage has no such height.
+  double height = 0;                      ///< Height at black below that at white, m.
+};
+
 /// Type-erased surface stage, for stages selected by a scene.
 class THIMBLE_EXPORT AnyStage {
  public:
@@ -37,6 +45,9 @@ class THIMBLE_EXPORT AnyStage {
   }
   /// See LiveSettings. Real-time: never from the servo thread.
   virtual void list_settings(LiveSettings& settings) = 0;
+  /// Returns the height that the stage makes felt, if it is a map. Real-time: never from the servo
+  /// thread.
+  virtual HeightOfStage drawn_height() const { return {}; }
 };
 
 #pragma GCC diagnostic push
@@ -74,6 +85,13 @@ class AnyStageOf final : public AnyStage {
     if constexpr (requires { Stage::kGroup; }) settings.set_group(Stage::kGroup);
     list_settings_of(stage_, settings);
     settings.set_group({});
+  }
+
+  HeightOfStage drawn_height() const override {
+    if constexpr (requires { HeightOfStage{stage_.map(), stage_.height()}; }) {
+      return {stage_.map(), stage_.height()};
+    }
+    return {};
   }
 
   const Stage& stage() const noexcept { return stage_; }
