@@ -61,7 +61,7 @@ bash "$source/app/guide/keys.sh" thimble | diff "$source/app/guide/pages/keys.md
 # Each friction, texture and field that a scene can name has a row on the page of effects. Joints and collisions have a
 # friction that is a number.
 for group in friction texture field; do
-  thimble help scene $group | sed -nE "s/^ *$group +(.*); .*/\1/p" | sed 's/, /\n/g; s/ or /\n/g' | grep -v '^a number' >names
+  thimble help scene $group | sed -nE "s/^ *$group +(.*); .*/\1/p" | grep -v '^a number' | sed 's/, /\n/g; s/ or /\n/g' >names
   [ "$(wc -l <names)" -ge 3 ] || { echo "FAILED: thimble help scene $group names hardly any" >&2 && exit 1; }
   while read -r name; do
     grep -q "^|.*\`$name\`" "$source/app/guide/pages/effects.md" ||
