@@ -7,7 +7,7 @@
 
 namespace thimble::studies {
 
-/// Force law of objects each of which is felt alone, with a proxy of its own: the forces are added,
+/// Force law of objects each of which is felt alone, with a separate proxy: the forces are added,
 /// and the touch is that of the deepest contact. For comparison with one proxy for all objects.
 struct AddedForces {
   std::vector<render::SceneTouch> objects;  ///< One scene per object.

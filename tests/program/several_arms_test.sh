@@ -30,7 +30,7 @@ for faults in together apart; do
 done
 
 for command in tune bench; do
-  "$thimble" $command --help >/dev/null 2>&1 || continue # in a package of its own
+  "$thimble" $command --help >/dev/null 2>&1 || continue # in a separate package
   expect_error 2 'second.yaml: left arms' "$thimble" $command second.yaml
 done
 sed '/arm: vintage/s/$/\n    tool: {radius: 0.003}/' second.yaml >tool.yaml

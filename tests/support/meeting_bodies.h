@@ -6,10 +6,8 @@
 #include <Eigen/Geometry>
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
-#include "body/motion/move_object.h"
 #include "collision/collider_of.h"
 #include "collision/collision_world.h"
 #include "support/meshes/shapes.h"
@@ -35,25 +33,12 @@ class MeetingBodies {
   }
 
   /// Adds a mesh that moves, touched as `shape`, if given; returns its number.
-  int add(const render::TriangleMesh& mesh_W, render::MotionChoice choice,
+  int add(const render::TriangleMesh& mesh_W, const render::MotionChoice& choice,
           const render::CollisionChoice& collision = {},
           const std::optional<render::Primitive>& shape = {}) {
-    const auto floor = std::exchange(choice.floor, std::nullopt);
     const render::SolidToCollide solid{&mesh_W, shape ? &*shape : nullptr};
-    const auto axes_W = render::axes_of(solid);
-    const auto motion = render::rigid_motion_of(mesh_W, choice, axes_W ? &*axes_W : nullptr);
-    EXPECT_TRUE(motion) << (motion ? "" : motion.error().message);
-    const render::MassProperties& mass = motion->body().settings().mass;
-    const bool turns = choice.kind == render::MotionKind::kRigid;
-    const auto set = render::collider_of(
-        solid, collision, render::PlaceOfBody{mass.q_WB.toRotationMatrix(), mass.p_WC});
-    EXPECT_TRUE(set) << (set ? "" : set.error().message);
-    plan_.bodies.push_back({.mass = mass.mass,
-                            .inertia = mass.inertia,
-                            .turns = turns,
-                            .shape_B = *set,
-                            .floor = floor});
-    members_.push_back({*motion, turns});
+    const auto added = render::add_body(solid, collision, choice, plan_, members_);
+    EXPECT_TRUE(added) << (added ? "" : added.error().message);
     return static_cast<int>(members_.size()) - 1;
   }
   int add_sphere(const Eigen::Vector3d& p_W, double radius, const render::MotionChoice& choice,
@@ -84,13 +69,7 @@ class MeetingBodies {
       plan_.joints.push_back({choice, a, b});
       return;
     }
-    springs_.push_back({.a = a,
-                        .b = b,
-                        .p_A = choice.p_W,
-                        .p_B = choice.p_end_W,
-                        .stiffness = choice.stiffness,
-                        .damping = choice.damping,
-                        .length = choice.length.value_or((choice.p_end_W - choice.p_W).norm())});
+    springs_.push_back(render::spring_of(choice, a, b));
   }
   render::RigidMotion& motion(int body) { return members_[static_cast<std::size_t>(body)].motion; }
   render::CollisionQuality& quality() { return plan_.quality; }

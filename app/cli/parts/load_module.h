@@ -6,7 +6,7 @@
 
 namespace thimble::cli {
 
-/// A part of the program in a module of its own, which is loaded when it is needed.
+/// A part of the program in a separate module, loaded when it is needed.
 struct ModulePart {
   const char* file;     ///< Name of the module's file.
   const char* symbol;   ///< Name of a variable in it that begins with the version of Thimble.

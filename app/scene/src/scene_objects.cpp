@@ -93,10 +93,15 @@ bool bodies_meet(const Scene& scene) {
 }
 
 /// Returns whether a shape at rest collides as a mesh.
-bool needs_own_mesh(const SceneObject& object) {
+bool collides_as_mesh(const SceneObject& object) {
   const auto kind = collision_of(object).shape;
   if (object.shape && std::holds_alternative<render::Torus>(object.shape->shape_W)) return true;
   return kind != render::CollisionShape::kOwn && kind != render::CollisionShape::kNone;
+}
+
+/// Returns whether the mesh of an object is needed, of a shape only for its mass or its collisions.
+bool needs_mesh(const SceneObject& object, bool meets) {
+  return !object.shape || object.body.motion || (meets && collides_as_mesh(object));
 }
 
 /// Builds the force law of one object that is touched by one arm.
@@ -296,10 +301,7 @@ driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(
   const bool meets = bodies_meet(scene);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
-    // Only a shape that moves needs its mesh, for its mass.
-    const bool needs_mesh =
-        !object.shape || object.body.motion || (meets && needs_own_mesh(object));
-    const MeshPointer mesh_W = needs_mesh ? objects->shared_mesh_W(i) : nullptr;
+    const MeshPointer mesh_W = needs_mesh(object, meets) ? objects->shared_mesh_W(i) : nullptr;
     const bool has_tracker = tracker != objects->trackers_.end() && tracker->object == i;
     const render::ContactChoice& contact = has_tracker ? (tracker++)->contact : object.contact;
     if (arms == 1) {
@@ -343,10 +345,9 @@ driver::Result<void> SceneObjects::let_meet(const Scene& scene, Touches& touches
     const SceneObject& object = scene.objects[i];
     if (object.build_field || object.paged) continue;
     number_of[i] = static_cast<int>(colliding.size());
-    const bool has_mesh = !object.shape || object.body.motion || needs_own_mesh(object);
     render::CollidingObject& one = colliding.emplace_back();
     one.name = object.name;
-    one.solid = {.mesh_W = has_mesh ? &mesh_W(i) : nullptr,
+    one.solid = {.mesh_W = needs_mesh(object, true) ? &mesh_W(i) : nullptr,
                  .shape_W = object.shape ? &object.shape->shape_W : nullptr};
     one.collision = collision_of(object);
     if (!object.body.motion) continue;

@@ -163,7 +163,7 @@ class BulletSolver final : public CollisionSolver {
 
  private:
   void add_bodies(const SolverPlan& plan, std::span<const SolverState> first);
-  void add_fixed(const ColliderSet& set);
+  btRigidBody* add_fixed(const ColliderSet& set);
   void add_floor(const Floor& floor);
   void add_joint(const SolverJoint& joint, std::span<const SolverState> first);
   void add_constraint(std::unique_ptr<btTypedConstraint> constraint);
@@ -175,12 +175,11 @@ class BulletSolver final : public CollisionSolver {
 
   struct Own {
     std::unique_ptr<btRigidBody> body;
-    bool turns = true;
     bool jointed = false;
   };
   struct FloorBody {
     Floor floor;
-    std::unique_ptr<btRigidBody> body;
+    btRigidBody* body = nullptr;  // one of `fixed_`
   };
 
   double scale_ = 1;  // Bullet's units per m
@@ -224,8 +223,7 @@ BulletSolver::BulletSolver(const SolverPlan& plan, std::span<const SolverState> 
       part_(plan.step / static_cast<double>(substeps_)) {
   set_pair_rules();
   btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
-  // Round bodies get up to three points in one step [Bullet],
-  // spheres only one.
+  // Round bodies get up to three points in one step [Bullet], spheres only one.
   configuration_.setConvexConvexMultipointIterations(3, 3);
   world_.setGravity({0, 0, 0});
   world_.observe(this);
@@ -261,18 +259,25 @@ BulletSolver::~BulletSolver() {
   for (auto& constraint : constraints_) world_.removeConstraint(constraint.get());
   for (auto& one : own_) world_.removeRigidBody(one.body.get());
   for (auto& one : fixed_) world_.removeRigidBody(one.get());
-  for (auto& one : floors_) world_.removeRigidBody(one.body.get());
+}
+
+// The shape of a body without one, which takes part in joints only.
+btEmptyShape& no_shape() {
+  static btEmptyShape shape;
+  return shape;
+}
+
+bool is_same(const Floor& a, const Floor& b) {
+  return a.height == b.height && a.n_W == b.n_W && a.friction == b.friction;
 }
 
 void BulletSolver::add_bodies(const SolverPlan& plan, std::span<const SolverState> first) {
-  // A body without a shape takes part in joints only.
-  static btEmptyShape nothing;
   for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
     const SolverBody& body = plan.bodies[i];
     BulletShapes& shapes = shapes_.emplace_back(body.shape_B, scale_, true);
     btCollisionShape* whole = shapes.whole();
     btRigidBody::btRigidBodyConstructionInfo info(
-        body.mass, nullptr, whole != nullptr ? whole : &nothing,
+        body.mass, nullptr, whole != nullptr ? whole : &no_shape(),
         to_bullet(Vector3d(scale_ * scale_ * body.inertia)));
     info.m_startWorldTransform = btTransform(to_bullet(first[i].q_WB), length(first[i].p_WC));
     info.m_friction = body.shape_B.friction;
@@ -291,42 +296,32 @@ void BulletSolver::add_bodies(const SolverPlan& plan, std::span<const SolverStat
     } else {
       world_.addRigidBody(made.get(), btBroadphaseProxy::DefaultFilter, 0);
     }
-    own_.push_back({.body = std::move(made), .turns = body.turns});
+    own_.push_back({.body = std::move(made)});
   }
   // Each floor is met by its own bodies only.
-  for (auto& floor : floors_) {
+  for (const FloorBody& floor : floors_) {
     for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
       const auto& own = plan.bodies[i].floor;
-      const bool same = own && own->height == floor.floor.height && own->n_W == floor.floor.n_W &&
-                        own->friction == floor.floor.friction;
-      if (!same) own_[i].body->setIgnoreCollisionCheck(floor.body.get(), true);
+      const bool meets = own && is_same(*own, floor.floor);
+      if (!meets) own_[i].body->setIgnoreCollisionCheck(floor.body, true);
     }
   }
 }
 
 void BulletSolver::add_floor(const Floor& floor) {
   for (const FloorBody& known : floors_) {
-    if (known.floor.height == floor.height && known.floor.n_W == floor.n_W &&
-        known.floor.friction == floor.friction) {
-      return;
-    }
+    if (is_same(known.floor, floor)) return;
   }
-  ColliderSet set;
-  Collider plane;
-  plane.form = ColliderForm::kHalfSpace;
-  plane.R = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), floor.n_W).toRotationMatrix();
-  plane.p = floor.height * floor.n_W;
-  set.shapes.push_back(plane);
-  set.friction = floor.friction;
-  add_fixed(set);
-  fixed_.back()->setUserIndex(kPairFriction);
-  floors_.push_back({floor, std::move(fixed_.back())});
-  fixed_.pop_back();
+  btRigidBody* const made = add_fixed(
+      {.shapes = {half_space(floor.n_W, floor.height * floor.n_W)}, .friction = floor.friction});
+  made->setUserIndex(kPairFriction);
+  floors_.push_back({floor, made});
 }
 
-void BulletSolver::add_fixed(const ColliderSet& set) {
+// Returns the body; null if there is no shape.
+btRigidBody* BulletSolver::add_fixed(const ColliderSet& set) {
   BulletShapes& shapes = shapes_.emplace_back(set, scale_, false);
-  if (shapes.whole() == nullptr) return;
+  if (shapes.whole() == nullptr) return nullptr;
   btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, shapes.whole());
   info.m_startWorldTransform = shapes.place();
   info.m_friction = set.friction;
@@ -339,6 +334,7 @@ void BulletSolver::add_fixed(const ColliderSet& set) {
   world_.addRigidBody(made.get(), btBroadphaseProxy::StaticFilter,
                       btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter);
   fixed_.push_back(std::move(made));
+  return fixed_.back().get();
 }
 
 /// Returns a rotation whose z (or x) is along an axis.
@@ -349,9 +345,8 @@ Eigen::Matrix3d frame_along(const Vector3d& axis, const Vector3d& own) {
 void BulletSolver::add_joint(const SolverJoint& joint, std::span<const SolverState> first) {
   const JointChoice& choice = joint.choice;
   if (!anchor_) {
-    static btEmptyShape nothing;
     anchor_ = std::make_unique<btRigidBody>(
-        btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &nothing));
+        btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &no_shape()));
   }
   const auto body = [&](int i) -> btRigidBody& {
     return i < 0 ? *anchor_ : *own_[static_cast<std::size_t>(i)].body;
@@ -414,7 +409,7 @@ void BulletSolver::add_joint(const SolverJoint& joint, std::span<const SolverSta
       break;
     }
     case JointKind::kSpring:
-      break;  // a force of its own (CollisionWorld)
+      break;  // a force (CollisionWorld)
   }
 }
 
@@ -474,10 +469,9 @@ double BulletSolver::kinetic_energy() const noexcept {
   double sum = 0;
   for (const Own& own : own_) {
     const btRigidBody& body = *own.body;
-    const btVector3 spin = own.turns ? body.getAngularVelocity() : btVector3(0, 0, 0);
-    const btVector3 spin_B = spin * body.getWorldTransform().getBasis();
+    const btVector3 spin_B = body.getAngularVelocity() * body.getWorldTransform().getBasis();
     sum += body.getLinearVelocity().length2() / body.getInvMass() / 2;
-    if (own.turns) sum += (spin_B * spin_B / body.getInvInertiaDiagLocal()).dot({1, 1, 1}) / 2;
+    sum += (spin_B * spin_B / body.getInvInertiaDiagLocal()).dot({1, 1, 1}) / 2;
   }
   return sum;
 }

@@ -1,11 +1,8 @@
 #include "collision/collide_objects.h"
 
-#include <cmath>
-#include <optional>
 #include <utility>
 
 #include "body/motion/held_touch.h"
-#include "body/motion/move_object.h"
 #include "body/motion/moving_touch.h"
 #include "collision/colliding_motion.h"
 #include "collision/collision_world.h"
@@ -13,21 +10,8 @@
 namespace thimble::render {
 namespace {
 
-using Eigen::Vector3d;
-
 driver::Error named(const CollidingObject& object, const driver::Error& error) {
   return driver::Error{object.name + ": " + error.message};
-}
-
-/// Returns a spring with its ends in the frames of the meshes, which are W before the first tick.
-SpringJoint spring_of(const JointChoice& choice, int a, int b) {
-  return {.a = a,
-          .b = b,
-          .p_A = choice.p_W,
-          .p_B = choice.p_end_W,
-          .stiffness = choice.stiffness,
-          .damping = choice.damping,
-          .length = choice.length.value_or((choice.p_end_W - choice.p_W).norm())};
 }
 
 }  // namespace
@@ -48,28 +32,14 @@ driver::Result<CollidingTouches> collide_objects(std::vector<CollidingObject> ob
       body_of.push_back(-1);
       continue;
     }
-    MotionChoice choice = *object.motion;
+    const MotionChoice& choice = *object.motion;
     if (choice.time_scale != 1) {
       return named(object, driver::Error{"a body that collides cannot have a time_scale; remove "
                                          "it, or set collision: {shape: none}"});
     }
-    // The solver has the floor.
-    const std::optional<Floor> floor = std::exchange(choice.floor, std::nullopt);
-    const auto axes_W = axes_of(object.solid);
-    auto motion = rigid_motion_of(*object.solid.mesh_W, choice, axes_W ? &*axes_W : nullptr);
-    if (!motion) return named(object, motion.error());
-    const MassProperties& mass = motion->body().settings().mass;
-    auto set = collider_of(object.solid, object.collision,
-                           PlaceOfBody{mass.q_WB.toRotationMatrix(), mass.p_WC});
-    if (!set) return named(object, set.error());
-    const bool turns = choice.kind == MotionKind::kRigid;
+    auto added = add_body(object.solid, object.collision, choice, plan, members);
+    if (!added) return named(object, added.error());
     plan.step = object.coupling.step;
-    plan.bodies.push_back({.mass = mass.mass,
-                           .inertia = mass.inertia,
-                           .turns = turns,
-                           .shape_B = std::move(set).value(),
-                           .floor = floor});
-    members.push_back({std::move(motion).value(), turns});
     body_of.push_back(static_cast<int>(moving.size()));
     moving.push_back(&object);
   }

@@ -10,7 +10,7 @@
 
 namespace thimble::render {
 
-/// Simple shape in a frame of its own.
+/// Simple shape, in a separate frame.
 enum class ColliderForm : std::uint8_t {
   kPoints,     ///< Convex hull of `points`.
   kTriangles,  ///< Surface of `points` and `triangles`.
@@ -32,6 +32,15 @@ struct Collider {
       Eigen::Matrix3d::Identity();  ///< Turns from the shape's frame to the owner's.
   Eigen::Vector3d p{0, 0, 0};       ///< Origin of the shape's frame in the owner's.
 };
+
+/// Returns the half-space below a plane with the unit normal `n` through `p`, in the owner's frame.
+inline Collider half_space(const Eigen::Vector3d& n, const Eigen::Vector3d& p) {
+  Collider plane;
+  plane.form = ColliderForm::kHalfSpace;
+  plane.R = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), n).toRotationMatrix();
+  plane.p = p;
+  return plane;
+}
 
 /// Several shapes that belong to one object, and how it rebounds and slides.
 struct ColliderSet {

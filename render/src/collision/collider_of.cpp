@@ -55,9 +55,7 @@ std::optional<Collider> own_shape(const Primitive& shape_W) {
         using Shape = std::decay_t<decltype(shape)>;
         Collider c;
         if constexpr (std::is_same_v<Shape, HalfSpace>) {
-          c.form = ColliderForm::kHalfSpace;
-          c.R = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), shape.n_W).toRotationMatrix();
-          c.p = shape.p_WO;
+          return half_space(shape.n_W, shape.p_WO);
         } else if constexpr (std::is_same_v<Shape, Sphere>) {
           c.form = ColliderForm::kSphere;
           c.size = Vector3d::Constant(shape.radius);

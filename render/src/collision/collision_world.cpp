@@ -3,14 +3,47 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "body/motion/body_coupling.h"
+#include "body/motion/move_object.h"
 #include "math/elementary.h"
 
 namespace thimble::render {
 
 using Eigen::Vector3d;
+
+driver::Result<void> add_body(const SolidToCollide& solid, const CollisionChoice& collision,
+                              MotionChoice choice, SolverPlan& plan,
+                              std::vector<CollisionWorld::Member>& members) {
+  // The solver has the floor.
+  const std::optional<Floor> floor = std::exchange(choice.floor, std::nullopt);
+  const auto axes_W = axes_of(solid);
+  auto motion = rigid_motion_of(*solid.mesh_W, choice, axes_W ? &*axes_W : nullptr);
+  if (!motion) return motion.error();
+  const MassProperties& mass = motion->body().settings().mass;
+  auto set = collider_of(solid, collision, PlaceOfBody{mass.q_WB.toRotationMatrix(), mass.p_WC});
+  if (!set) return set.error();
+  const bool turns = choice.kind == MotionKind::kRigid;
+  plan.bodies.push_back({.mass = mass.mass,
+                         .inertia = mass.inertia,
+                         .turns = turns,
+                         .shape_B = std::move(set).value(),
+                         .floor = floor});
+  members.push_back({std::move(motion).value(), turns});
+  return {};
+}
+
+SpringJoint spring_of(const JointChoice& choice, int a, int b) {
+  return {.a = a,
+          .b = b,
+          .p_A = choice.p_W,
+          .p_B = choice.p_end_W,
+          .stiffness = choice.stiffness,
+          .damping = choice.damping,
+          .length = choice.length.value_or((choice.p_end_W - choice.p_W).norm())};
+}
 
 driver::Result<std::shared_ptr<CollisionWorld>> CollisionWorld::build(
     std::vector<Member> members, const SolverPlan& plan, std::vector<SpringJoint> springs,

@@ -8,6 +8,7 @@
 #include "body/motion/body_frame.h"
 #include "body/motion/body_motions.h"
 #include "body/motion/shared_body.h"
+#include "collision/collider_of.h"
 #include "collision/collision_solver.h"
 #include "thimble/driver/result.h"
 
@@ -99,5 +100,14 @@ class CollisionWorld final : public SharedBody {
   double first_ = 0;           // energy before any step, J
   double lost_ = 0;            // largest loss of energy so far, J
 };
+
+/// Adds a body to the two lists of CollisionWorld::build. The error names an invalid number, or why
+/// there is no shape. Real-time: never from the servo thread.
+driver::Result<void> add_body(const SolidToCollide& solid, const CollisionChoice& collision,
+                              MotionChoice choice, SolverPlan& plan,
+                              std::vector<CollisionWorld::Member>& members);
+
+/// Returns a spring with its ends in the frames of the meshes, which are W before the first tick.
+SpringJoint spring_of(const JointChoice& choice, int a, int b);
 
 }  // namespace thimble::render
