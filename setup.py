@@ -47,10 +47,18 @@ class BuildByCMake(build_ext):
         subprocess.run(command, check=True)
 
 
+def numpy_of_pybind11() -> str:
+    """Returns the versions of numpy that the module will work with: pybind11 knows numpy 2 from 2.12 on."""
+    asked = subprocess.run(["pkg-config", "--modversion", "pybind11"], capture_output=True, text=True, check=False)
+    major, minor = (int(one) for one in (re.findall(r"\d+", asked.stdout) + ["0", "0"])[:2])
+    return "numpy" if (major, minor) >= (2, 12) else "numpy<2"
+
+
 version = re.search(r"project\(thimble VERSION ([0-9.]+)", (SOURCE / "CMakeLists.txt").read_text())
 assert version is not None
 setup(
     version=version[1],
+    install_requires=[numpy_of_pybind11()],
     ext_modules=[Extension("thimble._core", sources=[])],
     cmdclass={"build_ext": BuildByCMake},
 )

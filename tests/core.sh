@@ -14,7 +14,7 @@ empty_folder "$source/build/core_test"
 
 # Options whose tests are in programs that link other parts too.
 tested_without="MESH_FORMATS RECORDINGS BAGS WEB"
-for part in BUILD_APP MESH_FORMATS RECORDINGS BAGS BULLET VIEW WEB STUDIES COMMISSIONING COMPAT ROS2 PYTHON MPI BENCHMARKS TESTS; do
+for part in BUILD_APP MESH_FORMATS RECORDINGS BAGS BULLET FORMULAS VIEW WEB STUDIES COMMISSIONING COMPAT ROS2 PYTHON MPI BENCHMARKS TESTS; do
   echo "Configuring without THIMBLE_$part ..."
   quiet "$part" cmake --preset release -B "$work/$part" -D "THIMBLE_$part=OFF"
   if [ "${1:-}" = --each ]; then

@@ -24,7 +24,8 @@ driver::Result<BagTopic> read_bag(const std::filesystem::path& path, BagKind /*k
 }
 
 driver::Result<void> write_bag(const std::filesystem::path& folder,
-                               const std::vector<BagTrack>& /*tracks*/) {
+                               const std::vector<BagTrack>& /*tracks*/,
+                               const std::function<void(double)>& /*share_written*/) {
   return none(folder);
 }
 

@@ -23,7 +23,8 @@ constexpr const char* kTables =
     "CREATE INDEX timestamp_idx ON messages (timestamp ASC);";
 
 /// Writes all messages sorted by time, because players read them in the order of the table.
-driver::Result<void> fill(const SqliteFile& file, const std::vector<BagTrack>& tracks) {
+driver::Result<void> fill(const SqliteFile& file, const std::vector<BagTrack>& tracks,
+                          const std::function<void(double)>& written) {
   auto topic = file.ask("INSERT INTO topics VALUES (?, ?, ?, 'cdr', '')");
   if (!topic) return topic.error();
   for (std::size_t i = 0; i < tracks.size(); ++i) {
@@ -36,6 +37,8 @@ driver::Result<void> fill(const SqliteFile& file, const std::vector<BagTrack>& t
   auto row = file.ask("INSERT INTO messages(topic_id, timestamp, data) VALUES (?, ?, ?)");
   if (!row) return row.error();
   std::vector<std::size_t> next(tracks.size(), 0);
+  std::size_t all = 0, done = 0;
+  for (const BagTrack& track : tracks) all += track.messages.size();
   for (;;) {
     std::size_t first = tracks.size();
     std::int64_t time_ns = std::numeric_limits<std::int64_t>::max();
@@ -53,6 +56,7 @@ driver::Result<void> fill(const SqliteFile& file, const std::vector<BagTrack>& t
     row->put(3, std::span<const unsigned char>(bytes));
     if (auto put = row->next(); !put) return put.error();
     row->reset();
+    if (written) written(static_cast<double>(++done) / static_cast<double>(all));
   }
 }
 
@@ -87,14 +91,15 @@ std::string metadata(const std::vector<BagTrack>& tracks, const std::string& fil
 
 /// Writes a bag of files `database` and `text` of a folder that is there.
 driver::Result<void> write_files(const fs::path& database, const fs::path& text,
-                                 const std::vector<BagTrack>& tracks) {
+                                 const std::vector<BagTrack>& tracks,
+                                 const std::function<void(double)>& written) {
   const auto file = SqliteFile::create(database);
   if (!file) return file.error();
   for (const char* orders :
        {"PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF", kTables, "BEGIN"}) {
     if (auto done = file->run(orders); !done) return done.error();
   }
-  if (auto filled = fill(*file, tracks); !filled) return filled.error();
+  if (auto filled = fill(*file, tracks, written); !filled) return filled.error();
   if (auto ended = file->run("COMMIT"); !ended) return ended.error();
   std::ofstream stream(text, std::ios::binary);
   stream << metadata(tracks, database.filename().string());
@@ -106,7 +111,8 @@ driver::Result<void> write_files(const fs::path& database, const fs::path& text,
 }  // namespace
 
 driver::Result<void> write_bag(const std::filesystem::path& folder,
-                               const std::vector<BagTrack>& tracks) {
+                               const std::vector<BagTrack>& tracks,
+                               const std::function<void(double)>& share_written) {
   std::error_code failed;
   if (fs::exists(folder, failed) && !fs::is_empty(folder, failed)) {
     return driver::Error{folder.string() + ": already exists; choose a new folder."};
@@ -122,7 +128,7 @@ driver::Result<void> write_bag(const std::filesystem::path& folder,
   if (failed) return cannot(failed.message());
   const fs::path database = named / (named.filename().string() + "_0.db3");
   const fs::path text = named / "metadata.yaml";
-  if (auto written = write_files(database, text, tracks); !written) {
+  if (auto written = write_files(database, text, tracks, share_written); !written) {
     // Removes the incomplete bag, which would block the next attempt.
     std::error_code ignored;
     fs::remove(database, ignored);

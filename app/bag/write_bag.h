@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,10 @@ struct BagTrack {
 
 /// Writes a ROS 2 bag in SQLite for `ros2 bag play` of Humble: a folder with metadata.yaml (version
 /// 5) and one .db3 file with the folder's name. The folder must not exist yet, or be empty. The
-/// error says what cannot be written. Real-time: never from the servo thread.
-THIMBLE_EXPORT driver::Result<void> write_bag(const std::filesystem::path& folder,
-                                              const std::vector<BagTrack>& tracks);
+/// error says what cannot be written. `share_written`, if any, is called with the share of the
+/// messages that are written. Real-time: never from the servo thread.
+THIMBLE_EXPORT driver::Result<void> write_bag(
+    const std::filesystem::path& folder, const std::vector<BagTrack>& tracks,
+    const std::function<void(double)>& share_written = {});
 
 }  // namespace thimble::bag

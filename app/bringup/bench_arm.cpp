@@ -7,7 +7,8 @@
 
 #include "arm/report_timeout.h"
 #include "log/logger.h"
-#include "thimble/scene/device_settings.h"
+#include "thimble/driver/device.h"
+#include "thimble/scene/arm_file.h"
 #include "thimble/scene/real_arm.h"
 
 namespace thimble::bringup {

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "board_identity.h"
+
 namespace thimble::bringup {
 namespace {
 
@@ -39,6 +41,7 @@ std::string what_it_may_be(const FoundArm& board) {
 std::string how_to_use(const FoundArm& board) {
   if (board.board == BoardKind::kOther) return "If it is an arm, check its firmware.";
   const std::string kind(name(board.board));
+  const bool described = board.board == BoardKind::kDescribed;
   std::string advice;
   if (!board.accessible) {
     advice = "If it is your arm: echo '" + udev_line(board) +
@@ -48,11 +51,12 @@ std::string how_to_use(const FoundArm& board) {
     advice = "If it is your arm: ";
   }
   return advice + "thimble run SCENE --device " + board.name() +
-         " --arm FILE, with a file that contains `board: " + kind + "`";
+         (described ? " --arm " + board.arm_file + ", the file that describes the board"
+                    : " --arm FILE, with a file that contains `board: " + kind + "`");
 }
 
 std::string udev_line(const FoundArm& board) {
-  const bool tty = board.board == BoardKind::kTextLines;
+  const bool tty = board.board == BoardKind::kTextLines || board.bus == driver::kSerialBus;
   const bool by_serial = board.name() == board.serial;
   const std::string which = by_serial ? "ATTRS{serial}==\"" + unquoted(board.serial) + "\""
                                       : "KERNELS==\"" + board.sysfs.filename().string() + "\"";

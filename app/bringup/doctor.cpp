@@ -16,6 +16,7 @@
 #include "bringup/doctor_timing.h"
 #include "files/data_folders.h"
 #include "thimble/driver/discovery.h"
+#include "thimble/scene/real_arm.h"
 #include "transports/node_lock.h"
 
 namespace thimble::bringup {
@@ -77,7 +78,7 @@ class Examination {
   }
 
   void look_at_arms() {
-    const auto arms = driver::find_arms(system_.root);
+    const auto arms = scene::find_arms(system_.root);
     if (!arms) {
       note(Health::kProblem, arms.error().message, "sudo modprobe usbcore");
       return;
@@ -156,6 +157,15 @@ class Examination {
                "sudo modprobe cdc_acm, then plug it in again");
         }
         return;
+      case BoardKind::kDescribed:
+        if (arm.node.empty()) {
+          note(Health::kProblem, name + "no kernel driver is bound to it, so it has no node.",
+               "sudo modprobe cdc_acm usbhid, then plug it in again");
+        } else {
+          note(Health::kGood, name + "it is described by the arm file " + arm.arm_file +
+                                  ", and the kernel provides it as " + arm.node + ".");
+        }
+        return;
       case BoardKind::kHaplyService:
       case BoardKind::kDhdLibrary:
       case BoardKind::kHdLibrary:
@@ -191,6 +201,13 @@ class Examination {
     if (arm.node.empty()) return;  // already reported above
     if (arm.accessible) {
       note(Health::kGood, name + "you have access to " + arm.node + ".");
+    } else if (arm.board == BoardKind::kDescribed) {
+      note(Health::kProblem,
+           name + "you have no access to " + arm.node +
+               ": the installed udev rule covers only the arms that Thimble knows.",
+           "echo '" + udev_line(arm) +
+               "' | sudo tee -a /etc/udev/rules.d/71-my-arm.rules && sudo udevadm control "
+               "--reload, then plug it in again");
     } else if (!rule_) {
       note(Health::kProblem,
            name + "you have no access to " + arm.node + ": the udev rule is missing.",

@@ -30,11 +30,16 @@ class Check {
  public:
   Check(BenchArm& bench, const scene::ArmFile& file, const Prompt& prompt,
         const std::atomic<bool>& stop, const Question& question)
-      : bench_(bench), file_(file), prompt_(prompt), stop_(stop), question_(question) {}
+      : bench_(bench),
+        file_(file),
+        axes_(feel_check_axes(file)),
+        prompt_(prompt),
+        stop_(stop),
+        question_(question) {}
 
   std::vector<CheckResult> run() {
     // Each part requires the previous ones; the first that fails or is skipped ends the check.
-    const bool all = encoders() && directions() && pushes() && watchdog();
+    const bool all = axes() && encoders() && directions() && pushes() && watchdog();
     bench_.device().deactivate();
     const driver::Fault fault = bench_.device().fault();
     if (!all && fault != driver::Fault::kNone && !answers_only_) {
@@ -47,6 +52,14 @@ class Check {
   bool note(std::string name, bool passed, std::string text) {
     results_.push_back({std::move(name), passed, std::move(text)});
     return passed;
+  }
+
+  /// Returns whether the tip moves along axes of the world, which the prompts name.
+  bool axes() {
+    if (!axes_.empty()) return true;
+    return note("axes", false,
+                "The line or plane of the tip is not along axes of the world, which the feel check "
+                "names. Place it along them for the check (`at` in the arm file).");
   }
 
   bool encoders() {
@@ -63,25 +76,31 @@ class Check {
     if (!bench_.run(kEncoders_s, watch, stop_)) return false;
     constexpr std::int32_t kTravelMin = 100;  // counts; a few mm at the tip of every supported arm
     std::array<int, 3> travel{};
-    for (std::size_t i = 0; i < 3; ++i) travel[i] = highest[i] - lowest[i];
-    std::string dead;
-    for (std::size_t i = 0; i < 3; ++i) {
+    const auto motors = static_cast<std::size_t>(file_.motors());
+    for (std::size_t i = 0; i < motors; ++i) travel[i] = highest[i] - lowest[i];
+    std::string dead, counted;
+    for (std::size_t i = 0; i < motors; ++i) {
+      counted += fmt::format("{}{}", i == 0 ? "" : i + 1 < motors ? ", " : " and ", travel[i]);
       if (travel[i] < kTravelMin)
         dead += fmt::format(" Encoder {} does not count.", static_cast<int>(i) + 1);
     }
     return note("encoders", dead.empty(),
-                fmt::format("The encoders moved {}, {} and {} counts{}", travel[0], travel[1],
-                            travel[2], dead.empty() ? "." : "; expected at least 100 each.") +
+                fmt::format("The encoder{} moved {} counts{}", motors == 1 ? "" : "s", counted,
+                            dead.empty() ? "." : "; expected at least 100 each.") +
                     dead);
   }
 
   /// Asks for one movement along each axis; together they identify the wrong wire.
   bool directions() {
     bool right = true;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (const int axis : axes_) {
       if (!direction(axis, right)) return false;
     }
     if (right) return true;
+    if (file_.motors() < 3) {
+      return note("encoder wires", false,
+                  "An encoder counts backwards, or two are swapped. Run `thimble calibrate`.");
+    }
     // The user chooses the size of each movement; only the directions count.
     const Eigen::Matrix3d moves = expected_moves();
     const auto expected = [&](const WiringGuess& guess) -> Eigen::Matrix3d {
@@ -101,12 +120,16 @@ class Check {
     bool right = true;
     constexpr double kMargin = 0.9;  // for a grip that is not in the middle
     double worst = 1;
-    for_each_wiring([&](const WiringGuess& guess) {
-      const Eigen::Matrix3d forces = tip_forces(guess);
-      worst = std::max(worst, forces.operatorNorm());
-    });
+    if (file_.motors() == 3) {
+      for_each_wiring([&](const WiringGuess& guess) {
+        const Eigen::Matrix3d forces = tip_forces(guess);
+        worst = std::max(worst, forces.operatorNorm());
+      });
+    } else if (file_.motors() == 2) {
+      worst = std::max(worst, swapped_force());
+    }
     push_ = std::min(kForce, kMargin * scene::kFeelCheckForceMax / worst);
-    for (int axis = 0; axis < 3; ++axis) {
+    for (const int axis : axes_) {
       if (!push(axis, right)) return false;
     }
     if (right) return true;
@@ -116,6 +139,11 @@ class Check {
                               "force that the feel check allows. The dry friction is higher, you "
                               "held the grip firmly, or the motors have no power.",
                               kStrongest));
+    }
+    if (file_.motors() < 3) {
+      return note("motor wires", false,
+                  "A motor pulls backwards, does not pull, or is swapped with the other; or you "
+                  "held the grip firmly. Correct its wire or motor_sign in the arm file.");
     }
     const auto expected = [this](const WiringGuess& guess) { return tip_forces(guess); };
     const std::string text = describe_wiring(guess_wiring(pushed_, expected), "Motor",
@@ -160,6 +188,23 @@ class Check {
     }
     const Eigen::Matrix3d J = jacobian();
     return J.transpose().inverse() * guess.matrix(torque) * J.transpose();
+  }
+
+  /// Returns the largest force at the tip for 1 N requested, if the two motors of an arm are
+  /// swapped.
+  double swapped_force() const {
+    const Eigen::Vector3d p_BT = file_.R_WB.transpose() * (file_.workspace.middle() - file_.p_WB);
+    const auto q = driver::inverse(file_.model.geometry, p_BT);
+    if (!q) return 1;
+    Eigen::Vector3d p;
+    Eigen::Matrix3d J, swapped;
+    std::visit([&](const auto& build) { build.forward(*q, p, J); }, file_.model.geometry);
+    const auto torque = [&](std::size_t i) {
+      return file_.model.drives[i].ratio * file_.model.drives[i].torque_constant;
+    };
+    // The current for one motor drives the other.
+    swapped << 0, torque(0) / torque(1), 0, torque(1) / torque(0), 0, 0, 0, 0, 1;
+    return (J.transpose().inverse() * swapped * J.transpose()).operatorNorm();
   }
 
   /// Computes d p_WT / d q in the middle of the workspace, m/rad, by differences.
@@ -266,8 +311,9 @@ class Check {
                  "push Thimble stops sending, and the arm must release the grip by itself."))
       return false;
     if (!bench_.device().activate() || !bench_.run(kSettle_s, kRest, stop_)) return false;
-    const Eigen::Vector3d along = Eigen::Vector3d::UnitX();
-    const auto x = [this] { return bench_.device().state().p_WT.x(); };
+    const int axis = axes_.front();
+    const Eigen::Vector3d along = Eigen::Vector3d::Unit(axis);
+    const auto x = [this, axis] { return bench_.device().state().p_WT[axis]; };
     double force = std::max(kForce, std::min(kStrongest, friction_)), start = 0;
     // Dry friction leaves the tip anywhere between the ends of a pull and of a push. Each push
     // begins at the other end, so that both move in the same direction.
@@ -294,7 +340,7 @@ class Check {
     int reports = 0;
     const auto watch = [&](const driver::DeviceState& state) {
       reports += state.fresh ? 1 : 0;
-      if (off_after < 0 && state.p_WT.x() < let_go) off_after = bench_.now() - silent_since;
+      if (off_after < 0 && state.p_WT[axis] < let_go) off_after = bench_.now() - silent_since;
       return Eigen::Vector3d(0, 0, 0);
     };
     const double named = seconds(file_.limits.watchdog_ns), allowed = 2 * named;
@@ -363,6 +409,7 @@ class Check {
 
   BenchArm& bench_;
   const scene::ArmFile& file_;
+  const std::vector<int> axes_;  // of the world, along which the tip moves
   const Prompt& prompt_;
   const std::atomic<bool>& stop_;
   const Question& question_;
@@ -382,7 +429,24 @@ std::vector<CheckResult> feel_check(BenchArm& bench, const scene::ArmFile& file,
   return Check(bench, file, prompt, stop, question).run();
 }
 
-std::vector<std::pair<double, Eigen::Vector3d>> feel_check_hand(const Eigen::Vector3d& p_WT) {
+std::vector<int> feel_check_axes(const scene::ArmFile& file) {
+  if (file.motors() == 3) return {0, 1, 2};
+  std::vector<int> axes;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < file.motors(); ++i) {
+      if (std::abs(file.R_WB(axis, i)) == 1) axes.push_back(axis);
+    }
+  }
+  if (static_cast<int>(axes.size()) != file.motors()) axes.clear();
+  return axes;
+}
+
+std::size_t feel_checks(const scene::ArmFile& file) {
+  return 2 + 2 * static_cast<std::size_t>(file.motors());
+}
+
+std::vector<std::pair<double, Eigen::Vector3d>> feel_check_hand(const Eigen::Vector3d& p_WT,
+                                                                const std::vector<int>& axes) {
   std::vector<std::pair<double, Eigen::Vector3d>> way;
   const auto go = [&](double time, double x, double y, double z) {
     way.emplace_back(time, p_WT + kMove * Eigen::Vector3d(x, y, z));
@@ -392,8 +456,9 @@ std::vector<std::pair<double, Eigen::Vector3d>> feel_check_hand(const Eigen::Vec
   go(2, -1, 0, 1);
   go(3, 0, -1, -1);
   go(kEncoders_s - 0.2, 0, 0, 0);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double begin = kEncoders_s + axis * kDirection_s;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const int axis = axes[i];
+    const double begin = kEncoders_s + static_cast<double>(i) * kDirection_s;
     const Eigen::Vector3d there = Eigen::Vector3d::Unit(axis);
     go(begin, 0, 0, 0);
     go(begin + 0.8, there.x(), there.y(), there.z());

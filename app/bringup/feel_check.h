@@ -13,9 +13,18 @@
 
 namespace thimble::bringup {
 
-/// Number of results of a check in which all steps passed: encoders, three directions, three
-/// forces, watchdog.
+/// Number of results of a check of an arm with three motors in which all steps passed: encoders,
+/// three directions, three forces, watchdog.
 inline constexpr std::size_t kFeelChecks = 8;
+
+/// Returns the same for an arm: it has a direction and a force per motor. Real-time: never from the
+/// servo thread.
+std::size_t feel_checks(const scene::ArmFile& file);
+
+/// Returns the axes of the world (0, 1, 2) along which the tip moves: three, or those of the line
+/// or plane of an arm with one or two motors. Empty if that is not along axes of the world.
+/// Real-time: never from the servo thread.
+std::vector<int> feel_check_axes(const scene::ArmFile& file);
 
 /// Result of one step of the check.
 struct CheckResult {
@@ -43,7 +52,9 @@ std::vector<CheckResult> feel_check(BenchArm& bench, const scene::ArmFile& file,
                                     const Question& question = {});
 
 /// Returns the path of a simulated hand that follows the prompts without pauses (seconds and points
-/// in the world, m). `p_WT` is its start.
-std::vector<std::pair<double, Eigen::Vector3d>> feel_check_hand(const Eigen::Vector3d& p_WT);
+/// in the world, m). `p_WT` is its start; `axes` are those of `feel_check_axes`.
+std::vector<std::pair<double, Eigen::Vector3d>> feel_check_hand(const Eigen::Vector3d& p_WT,
+                                                                const std::vector<int>& axes = {
+                                                                    0, 1, 2});
 
 }  // namespace thimble::bringup

@@ -10,7 +10,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kAxis = 1;             // y: no weight acts along it
 constexpr double kExcessMax = 0.12;  // N above dry friction [chosen]
 constexpr double kExcessMin = 0.02;
 constexpr double kSilent = 0.005;  // s, between two checks of the tip
@@ -66,6 +65,16 @@ double kink(const std::vector<double>& way, std::size_t about) {
   return best;
 }
 
+/// Returns whether a point is inside the workspace. The width of an arm's line or plane is 0, so a
+/// rounding error there does not count.
+bool is_inside(const scene::WorkspaceBox& workspace, const Vector3d& p_W) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = workspace.min_W[axis], high = workspace.max_W[axis];
+    if (low < high && !(p_W[axis] >= low && p_W[axis] <= high)) return false;
+  }
+  return p_W.allFinite();
+}
+
 }  // namespace
 
 WatchdogPush observe_watchdog(BenchArm& bench, const WatchdogOrder& order, double sign,
@@ -77,8 +86,8 @@ WatchdogPush observe_watchdog(BenchArm& bench, const WatchdogOrder& order, doubl
   seen.force = order.coulomb + excess;
   const Vector3d p_WT = bench.device().state().p_WT;
   // Distance of the tip after its release.
-  const Vector3d p_WE = p_WT + sign * 1.5 * kWatchdogWayMax * Vector3d::Unit(kAxis);
-  const bool room = order.workspace.holds(p_WT) && order.workspace.holds(p_WE);
+  const Vector3d p_WE = p_WT + sign * 1.5 * kWatchdogWayMax * order.direction_W;
+  const bool room = is_inside(order.workspace, p_WT) && is_inside(order.workspace, p_WE);
   const bool allowed = seen.force <= order.max_force;
   if (!(excess >= kExcessMin) || !room || !allowed) {
     bench.device().deactivate();
@@ -87,18 +96,19 @@ WatchdogPush observe_watchdog(BenchArm& bench, const WatchdogOrder& order, doubl
                           : WatchdogEnd::kTooLong;
     return seen;
   }
-  const double from = p_WT[kAxis];
-  const Vector3d f_T_W = sign * seen.force * Vector3d::Unit(kAxis);
+  const Vector3d f_T_W = sign * seen.force * order.direction_W;
   std::vector<double> way;  // m, a tick each
   double last = -1;         // s
   int reports = 0;
   bool outside = false, faulted = false;
   const auto push = [&](const driver::DeviceState& state) -> Vector3d {
     // A run begins in the tick in which the previous one ended.
-    if (bench.now() - last > 0.5 * kSecond) way.push_back(sign * (state.p_WT[kAxis] - from));
+    if (bench.now() - last > 0.5 * kSecond) {
+      way.push_back(sign * order.direction_W.dot(state.p_WT - p_WT));
+    }
     last = bench.now();
     reports += state.fresh ? 1 : 0;
-    outside = outside || !order.workspace.holds(state.p_WT);
+    outside = outside || !is_inside(order.workspace, state.p_WT);
     return outside ? Vector3d(0, 0, 0) : f_T_W;
   };
   const bool pushed = bench.run(kBefore, push, stop);

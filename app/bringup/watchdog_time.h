@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <atomic>
 
 #include "bringup/bench_arm.h"
@@ -16,6 +17,8 @@ struct WatchdogOrder {
   double delay = 0;                 ///< Delay from a force to the motion that the host sees, s.
   scene::WorkspaceBox workspace{};  ///< Region in which the arm may be pushed.
   double max_force = 1;             ///< Max. requested force, N.
+  /// Unit vector of the push in the world (`push_direction`).
+  Eigen::Vector3d direction_W{0, 1, 0};
 };
 
 /// End of a search for the watchdog's time.
@@ -42,9 +45,9 @@ struct WatchdogPush {
 /// Max. distance of a free tip while the watchdog is awaited, m.
 inline constexpr double kWatchdogWayMax = 0.015;
 
-/// Pushes a free tip with slightly more than its dry friction along y of the world (no weight acts
-/// there), `sign` 1 or -1, then stops sending. The tip's speed is greatest when the force ends. A
-/// tip that has moved 15 mm, or left the workspace, is released before that by a message of zero
+/// Pushes a free tip with slightly more than its dry friction along `direction_W`, forwards or
+/// backwards (`sign` 1 or -1), then stops sending. The tip's speed is greatest when the force ends.
+/// A tip that has moved 15 mm, or left the workspace, is released before that by a message of zero
 /// force. The device must be active, its soft start over; it is idle afterwards. Real-time: never
 /// from the servo thread.
 WatchdogPush observe_watchdog(BenchArm& bench, const WatchdogOrder& order, double sign,

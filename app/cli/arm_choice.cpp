@@ -51,7 +51,7 @@ driver::Result<ChosenArm> resolve(const ArmChoice& choice, bool for_calibration)
   ChosenArm chosen;
   std::string left;  // boards of unknown kind
   if (choice.device != "sim") {
-    const auto plugged_in = driver::find_arms();
+    const auto plugged_in = scene::find_arms();
     auto real = scene::choose_arm(plugged_in ? *plugged_in : std::vector<driver::FoundArm>(),
                                   choice.device);
     if (!real) return real.error();

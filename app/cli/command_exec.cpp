@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -18,11 +19,13 @@
 
 #include "cli/commands.h"
 #include "cli/options/ros_options.h"
+#include "cli/options/theme_option.h"
 #include "cli/report_error.h"
 #include "cli/usage/usage_error.h"
 #include "compat/core/open_channel.h"
 #include "compat/haply/haply_service.h"
 #include "compat/server/arm_server.h"
+#include "compat/server/foreign_libraries.h"
 #include "compat/server/library_folder.h"
 #include "files/scene_inputs.h"
 #include "hold_key.h"
@@ -32,6 +35,7 @@
 #include "recording/recording_layout.h"
 #include "ros2/ros_module.h"
 #include "signals.h"
+#include "system/printable_text.h"
 #include "thimble/scene/shipped_files.h"
 
 namespace thimble::cli {
@@ -48,6 +52,7 @@ struct ExecRequest {
   std::uint16_t port = compat::haply::kPort;
   RosArguments ros;
   std::string hold_to_run;
+  std::vector<std::string> presses;
 };
 
 /// Reads the options of the topics, if topics are wanted.
@@ -78,6 +83,9 @@ std::vector<compat::ExecArm> arms_of(const ExecRequest& asked) {
   return arms;
 }
 
+/// The environment variable in which wrappers of Force Dimension's libraries find the SDK.
+constexpr const char* kSdkVariable = "FDSDK";
+
 /// Returns the environment of the program: this process's, with our libraries first, the arms'
 /// address, and the port of the service, if there is one.
 std::vector<std::string> environment(const fs::path& libraries, const std::string& address,
@@ -90,11 +98,13 @@ std::vector<std::string> environment(const fs::path& libraries, const std::strin
       const std::string before = text.substr(text.find('=') + 1);
       if (!before.empty()) search += ":" + before;
     } else if (!text.starts_with(std::string(compat::kChannelVariable) + "=") &&
+               !text.starts_with(std::string(kSdkVariable) + "=") &&
                !(service != nullptr && text.starts_with(std::string(kPortVariable) + "="))) {
       variables.push_back(text);
     }
   }
   variables.push_back(search);
+  variables.push_back(std::string(kSdkVariable) + "=" + (libraries / "fdsdk").string());
   variables.push_back(std::string(compat::kChannelVariable) + "=" + address);
   if (service != nullptr) {
     variables.push_back(std::string(kPortVariable) + "=" + std::to_string(service->port()));
@@ -129,16 +139,36 @@ int start(std::vector<std::string> command, std::vector<std::string> variables, 
   return status;
 }
 
+/// Vendors' libraries that a program has loaded instead of ours.
+struct ForeignLibraries {
+  fs::path ours;                     ///< Folder of our libraries.
+  std::set<std::string> found = {};  ///< Their paths.
+  Clock::time_point next{};          ///< Time of the next look.
+
+  /// Looks at the program's processes, often in the first second and rarely later.
+  void look(pid_t program, Clock::time_point begin) {
+    constexpr auto kStart = std::chrono::seconds(1);
+    constexpr auto kPause = std::chrono::milliseconds(500);
+    const Clock::time_point now = Clock::now();
+    if (now < next) return;
+    if (now - begin > kStart) next = now + kPause;
+    found.merge(compat::foreign_libraries(program, ours));
+  }
+};
+
 /// Serves the program until it ends, and returns its status (waitpid). An interrupt ends first the
 /// forces, then the program.
-int serve(compat::ArmServer& server, pid_t child, const std::atomic<bool>& stop) {
+int serve(compat::ArmServer& server, pid_t child, const std::atomic<bool>& stop,
+          ForeignLibraries& foreign) {
   constexpr std::int64_t kPollTime_ns = 20'000'000;
   constexpr auto kTermDelay = std::chrono::milliseconds(500);
   constexpr auto kKillDelay = std::chrono::seconds(5);
   Clock::time_point stopped{};
   bool asked = false, killed = false;
+  const Clock::time_point begin = Clock::now();
   for (int status = 0;;) {
     server.step(kPollTime_ns);
+    foreign.look(child, begin);
     if (waitpid(child, &status, WNOHANG) == child) return status;
     if (!stop.load() && !server.ended_by_viewer()) continue;
     if (stopped == Clock::time_point{}) {
@@ -196,6 +226,16 @@ driver::Result<std::unique_ptr<compat::haply::Service>> make_service(const ExecR
   return service;
 }
 
+/// Prints which vendors' libraries a program used instead of ours.
+void warn_of_foreign_libraries(const std::string& program, const ForeignLibraries& foreign) {
+  for (const std::string& library : foreign.found) {
+    scene::logger().warn(
+        "{} loaded {}, which does not find the arms of Thimble. Let it load the library by its "
+        "bare name, without LD_PRELOAD, RPATH or a path.",
+        program, driver::printable(library));
+  }
+}
+
 /// Prints a possible reason why a program opened no arm.
 void warn_of_no_arm(const std::string& program, const fs::path& libraries) {
   scene::logger().warn(
@@ -233,6 +273,9 @@ int run_program(const ExecRequest& asked, const std::vector<std::string>& comman
   options.arms = arms_of(asked);
   options.paced = asked.clock == "virtual";
   options.hold = *hold;
+  auto presses = scene::read_button_presses("--button-at", asked.presses);
+  if (!presses) return report_error(presses.error(), kExitBadInput);
+  options.presses = std::move(presses).value();
   if (auto taken = take_topics(asked.ros, options); !taken) {
     return report_error(taken.error(), kExitBadInput);
   }
@@ -255,6 +298,7 @@ int run_program(const ExecRequest& asked, const std::vector<std::string>& comman
         command.empty() ? " Press Ctrl-C to stop." : "");
   }
   int status = 0;
+  ForeignLibraries foreign{.ours = *libraries};
   if (command.empty()) {
     serve_all(server, stop);
   } else {
@@ -266,12 +310,13 @@ int run_program(const ExecRequest& asked, const std::vector<std::string>& comman
       return report_error({command.front() + " cannot be started: " + std::strerror(error) + "."},
                           kExitBadInput);
     }
-    status = serve(server, child, stop);
+    status = serve(server, child, stop, foreign);
   }
   if (service) end(*service, server);
   server.end();
   // Standard output belongs to the program, so this goes to standard error.
   session::print(stderr, "{}", server.report());
+  warn_of_foreign_libraries(options.program, foreign);
   if (service && service->programs() == 0) {
     scene::logger().warn("No program connected to ws://localhost:{}.", service->port());
   } else if (server.runs() == 0) {
@@ -292,13 +337,18 @@ void add_exec_command(CLI::App& app, int& exit_code) {
       "Example: thimble exec --arm vintage_phantom ./my_program\n\n"
       "Write the options before PROGRAM; the words after it are passed to the program.\n"
       "Supported APIs: HDAPI, DHD, CHAI3D and the service of the Inverse3. The program\n"
-      "loads Thimble's libHD, libhdPhantom, libdhd and libdrd instead of the vendor's.\n"
+      "loads Thimble's libHD, libHL, libhdPhantom, libdhd and libdrd instead of the\n"
+      "vendor's. libHL only returns errors.\n"
       "Its forces pass the safety gate. Without --device the arm is simulated.\n"
       "With --serve haply, programs of the Inverse3 connect as to the vendor's\n"
       "service. Without PROGRAM, the command serves them until Ctrl-C.\n\n"
       "--arm, --device  Repeat for a second arm.\n"
-      "--hand           path: the path in the scene. mouse: the mouse in the viewer.\n"
-      "                 FILE: lines \"t x y z\" (s, m), or a ROS bag.\n"
+      "--hand           path: the path in the scene. free: follows the tip, holds\n"
+      "                 nothing. mouse: the mouse in the viewer.\n"
+      "                 FILE: lines \"t x y z\" (s, m) or \"t x y z buttons\", or a ROS\n"
+      "                 bag. buttons: sum of 1 for the first, 2 for the second, 4...\n"
+      "--button-at      Repeat for a further press. Without BUTTON, the first; without\n"
+      "                 DURATION, 0.2 s. Presses are of simulated arms.\n"
       "--clock          virtual: each tick waits for the program, so that runs can be\n"
       "                 repeated exactly (simulated arms only).\n"
       "--hold-to-run    BUTTON: button (the first of the arm), or button2 to button16.\n" +
@@ -342,16 +392,26 @@ void add_exec_command(CLI::App& app, int& exit_code) {
       ->option_text("NAME|FILE")
       ->group(kRun);
   command
-      ->add_option("--hand", options.hand, "Input that moves the simulated hand: path, mouse, FILE")
+      ->add_option("--hand", options.hand,
+                   "Input that moves the simulated hand: path, free, mouse, FILE")
       ->option_text("SOURCE")
       ->capture_default_str()
+      ->group(kRun);
+  command
+      ->add_option("--button-at", asked->presses, "Press a button of the simulated arm at a time")
+      ->allow_extra_args(false)
+      ->option_text("SECONDS[:BUTTON[:DURATION]]")
       ->group(kRun);
   command
       ->add_option("--clock", asked->clock, "Real time, or simulated time in step with the program")
       ->check(CLI::IsMember({"virtual", "wall"}))
       ->capture_default_str()
       ->group(kRun);
-  command->add_flag("--view", options.view, "Show the run in a window")->group(kRun);
+  CLI::Option* view =
+      command->add_flag("--view", options.view, "Show the run in a window")->group(kRun);
+  add_theme_option(*command, options.theme, "Colour theme of the window (default light)")
+      ->needs(view)
+      ->group(kRun);
   constexpr const char* kService = "Service";
   command->add_option("--serve", asked->serve, "Serve JSON over WebSocket, on this computer only")
       ->check(CLI::IsMember({"haply"}))

@@ -1,10 +1,12 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/options/json_option.h"
 #include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "log/printed_text.h"
@@ -23,7 +25,39 @@ struct ExportOptions {
   std::string csv;
   std::string bag;
   std::string sound;
+  bool info = false;
 };
+
+/// Prints what a recording contains.
+void print_info(const session::Recording& recording) {
+  const session::RecordingInfo& info = recording.info;
+  const double duration = recording.ticks.empty()
+                              ? 0
+                              : 1e-9 * static_cast<double>(recording.ticks.back().time_ns -
+                                                           recording.ticks.front().time_ns);
+  nlohmann::ordered_json json{{"scene", info.scene},
+                              {"scene_file", info.scene_file},
+                              {"arm", info.arm},
+                              {"arm_file", info.arm_file},
+                              {"arm_in_scene", info.arm_in_scene},
+                              {"device", info.device},
+                              {"clock", info.clock},
+                              {"program", info.program},
+                              {"rate_Hz", info.rate},
+                              {"seed", info.seed},
+                              {"options", info.options},
+                              {"ticks", recording.ticks.size()},
+                              {"duration_s", duration},
+                              {"complete", recording.complete}};
+  std::size_t width = 0;
+  for (const auto& [name, value] : json.items()) width = std::max(width, name.size());
+  for (const auto& [name, value] : json.items()) {
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    scene::print_format("%-*s  %s\n", static_cast<int>(width), name.c_str(),
+                        text.empty() ? "-" : text.c_str());
+  }
+  print_json("recording", json);
+}
 
 int export_recording(const ExportOptions& options) {
   output::OutputPlan plan;
@@ -40,6 +74,7 @@ int export_recording(const ExportOptions& options) {
                         recording->info.scene.c_str(), recording->info.rate,
                         recording->complete ? "" : "; the recording was cut off");
   };
+  if (options.info) print_info(*recording);
   if (!options.csv.empty()) {
     if (auto written = session::write_csv(*recording, options.csv); !written) {
       return report_error(written.error(), kExitTrouble);
@@ -76,7 +111,9 @@ void add_export_command(CLI::App& app, int& exit_code) {
   as->add_option("--bag", options->bag, "Folder for a ROS 2 bag (SQLite)")->option_text("DIR");
   as->add_option("--sound", options->sound, "WAV file with the sound of the contact")
       ->option_text("FILE");
-  as->require_option(1, 3);
+  as->add_flag("--info", options->info, "Print scene, arm, rate, seed and duration");
+  as->require_option(1, 4);
+  add_json_option(*command)->needs("--info");
   add_example(*command, "thimble export touch.h5 --csv touch.csv",
               "The topics of the bag are /pose, /wrench (force after the safety gate) and\n"
               "/wrench_wanted (force before it).\n"

@@ -61,9 +61,10 @@ int check_arm(const ArmChoice& choice, double listen) {
   const std::atomic<bool>& stop = scene::catch_interrupts();
   if (chosen->real_arm) scene::treat_sigtstp_as_exit();
   const scene::ForceExitGuard guard;
-  auto bench =
-      bringup::BenchArm::open(chosen->file, chosen->real_arm, choice.firmware,
-                              bringup::feel_check_hand({0, 0, 0}), scene::kFeelCheckForceMax);
+  auto bench = bringup::BenchArm::open(
+      chosen->file, chosen->real_arm, choice.firmware,
+      bringup::feel_check_hand({0, 0, 0}, bringup::feel_check_axes(chosen->file)),
+      scene::kFeelCheckForceMax);
   if (!bench) {
     return report_error(bench.error(), kExitNoDevice);
   }
@@ -102,7 +103,7 @@ int check_arm(const ArmChoice& choice, double listen) {
     all = all && result.passed;
   }
   if (stop.load()) return kExitInterrupted;
-  const bool passed = all && results.size() == bringup::kFeelChecks;
+  const bool passed = all && results.size() == bringup::feel_checks(chosen->file);
   scene::logger().info("The feel check of {} was {}.", chosen->name,
                        passed ? "passed"
                        : all  ? "cancelled"

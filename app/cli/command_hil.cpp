@@ -8,7 +8,6 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -18,6 +17,7 @@
 #include "arm_policy/feel_check_record.h"
 #include "cli/arm_choice.h"
 #include "cli/commands.h"
+#include "cli/options/json_option.h"
 #include "cli/prompts/yes_question.h"
 #include "cli/report_error.h"
 #include "cli/usage/help_text.h"
@@ -26,6 +26,7 @@
 #include "hil/hil_suite.h"
 #include "log/logger.h"
 #include "log/printed_text.h"
+#include "log/progress.h"
 #include "output/output_plan.h"
 #include "signals.h"
 
@@ -52,8 +53,11 @@ std::string now_utc() {
 }
 
 void print(const hil::HilResult& result) {
-  scene::print_format("%-7s %-16s %s\n", hil::words_of(result.outcome).on_terminal,
-                      result.name.c_str(), result.text.c_str());
+  const scene::Tone tone = result.outcome == hil::HilOutcome::kPassed   ? scene::Tone::kGood
+                           : result.outcome == hil::HilOutcome::kFailed ? scene::Tone::kBad
+                                                                        : scene::Tone::kAdvice;
+  scene::print_toned(tone, fmt::format("{:<7}", hil::words_of(result.outcome).on_terminal));
+  scene::print_format(" %-16s %s\n", result.name.c_str(), result.text.c_str());
   for (const session::Figure& figure : result.figures) {
     if (figure.met()) continue;
     scene::print_format("        %-16s %s = %.4g %s, not %s%s\n", "", figure.name.c_str(),
@@ -77,8 +81,8 @@ bringup::Prompt prompt_of(bool person, const std::atomic<bool>& stop) {
   };
 }
 
-/// The stop flag of a suite: set by a signal, or when its time is over. Also prints how long a
-/// check has been running. Real-time: never from the servo thread.
+/// The stop flag of a suite: set by a signal, or when its time is over. Real-time: never from the
+/// servo thread.
 class SuiteClock {
  public:
   /// `timeout`, s; 0: none.
@@ -94,13 +98,6 @@ class SuiteClock {
   const std::atomic<bool>& stop() const { return stop_; }
   /// Returns whether the suite was stopped by its timeout.
   bool timed_out() const { return timed_out_.load(); }
-  /// Records the start of a check.
-  void begin(std::string name) {
-    const std::lock_guard lock(mutex_);
-    name_ = std::move(name);
-    since_ = Clock::now();
-    progress_reports_ = 0;
-  }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -114,29 +111,13 @@ class SuiteClock {
         timed_out_.store(true);
         stop_.store(true);
       }
-      print_progress();
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-  }
-
-  void print_progress() {
-    constexpr int kEvery_s = 30;
-    const std::lock_guard lock(mutex_);
-    const auto passed = std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - since_);
-    const auto due = static_cast<int>(passed.count()) / kEvery_s;
-    if (name_.empty() || due <= progress_reports_) return;
-    progress_reports_ = due;
-    scene::print_format("        %-16s has been running for %d s\n", name_.c_str(), kEvery_s * due);
-    std::fflush(stdout);
   }
 
   const std::atomic<bool>& interrupted_;
   double timeout_;
   std::atomic<bool> stop_{false}, timed_out_{false}, leave_{false};
-  std::mutex mutex_;
-  std::string name_;
-  Clock::time_point since_ = Clock::now();
-  int progress_reports_ = 0;
   std::thread thread_;
 };
 
@@ -211,7 +192,7 @@ int run_hil(HilCommand command) {
   output::OutputPlan plan;
   plan.read(command.choice.arm_file);
   plan.read(command.choice.firmware);
-  plan.write("--json", command.json, output::kJson);
+  plan.write("--output", command.json, output::kJson);
   plan.write("--junit", command.junit, output::kXml);
   if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   hil::HilOptions& options = command.options;
@@ -280,10 +261,12 @@ int run_hil(HilCommand command) {
   if (!chosen->real_arm) options.replug = false;
   driver::Result<void> written;
   hil::HilListener listener;
+  scene::Progress progress("hil");
   listener.begun = [&](const std::string& name, std::size_t number, std::size_t count) {
+    progress.set_share(number - 1, count);
+    progress.set_state(name);
     scene::print_format("[%zu/%zu] %s\n", number, count, name.c_str());
     std::fflush(stdout);
-    clock.begin(name);
   };
   listener.ended = [&](const std::vector<hil::HilResult>& results) {
     print(results.back());
@@ -292,6 +275,7 @@ int run_hil(HilCommand command) {
     }
   };
   const auto results = hil::run_hil_suite(rig, options, listener);
+  if (!stop.load()) progress.set_share(1.0);
   for (const hil::HilResult& result : results) {
     if (stop.load() && result.outcome == hil::HilOutcome::kNotRun) print(result);
   }
@@ -306,6 +290,7 @@ int run_hil(HilCommand command) {
     scene::print_format("Not tested: %s\n", sentence.c_str());
   }
   print_summary(results);
+  print_json("hil", hil::hil_json(files.record(), results));
   if (clock.timed_out()) {
     scene::print_format("--timeout: the suite was stopped after %g s.\n", command.timeout);
   }
@@ -360,9 +345,10 @@ void add_hil_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.02, 0.2))
       ->group(kPerson);
   constexpr const char* kOutput = "Output";
-  sub->add_option("--json", command->json, "Write the results as JSON")
+  sub->add_option("--output", command->json, "Write the results as JSON to a file")
       ->option_text("FILE")
       ->group(kOutput);
+  add_json_option(*sub)->group(kOutput);
   sub->add_option("--junit", command->junit, "Write the results as JUnit XML")
       ->option_text("FILE")
       ->group(kOutput);

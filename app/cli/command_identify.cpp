@@ -45,6 +45,7 @@ struct IdentifyCommand {
   std::string report;
   bool yes = false;
   bool write_bad_fit = false;
+  bool names_places = false, names_max_force = false;  // on the command line
 };
 
 // Duration of a motion divided by that of one place: seven places take about as long as one motion,
@@ -160,6 +161,42 @@ int keep(const IdentifyCommand& command, const ChosenArm& chosen, const bringup:
   return done;
 }
 
+/// Replaces defaults that do not fit the arm, and states each in a line.
+void fit_defaults(IdentifyCommand& command, const scene::ArmFile& file) {
+  bringup::IdentifyOptions& options = command.options;
+  if (!command.names_places && !bringup::check_places(file, options)) {
+    options.places = 0;
+    scene::print_format(
+        "--places is 0 for this arm: the inertia of links is identified for arms with three motors "
+        "only.\n");
+  }
+  const double max_force = bringup::default_max_force(file);
+  if (!command.names_max_force && max_force < options.max_force) {
+    options.max_force = max_force;
+    scene::print_format(
+        "--max-force is %g N for this arm, the limit of its file (gate.force_max).\n", max_force);
+  }
+}
+
+/// Writes the page with plots.
+int write_report(const IdentifyCommand& command, const ChosenArm& chosen,
+                 const bringup::Identified& found) {
+  const auto written = identified::write_identify_page(found, chosen.file,
+                                                       {.arm = chosen.file.name,
+                                                        .device = chosen.name,
+                                                        .simulated = !chosen.real_arm,
+                                                        .date = today(),
+                                                        .program = scene::program_name(),
+                                                        .seconds = command.options.seconds,
+                                                        .max_force = command.options.max_force,
+                                                        .bad_fit_is_written = command.write_bad_fit,
+                                                        .known_mass = command.options.known_mass},
+                                                       command.report);
+  if (!written) return report_error(written.error(), kExitTrouble);
+  scene::print_format("Report in %s/index.html.\n", command.report.c_str());
+  return kExitDone;
+}
+
 int identify_arm(IdentifyCommand command) {
   const auto chosen = resolve(command.choice, false);
   if (!chosen) return report_error(chosen.error(), exit_code_of(command.choice));
@@ -174,6 +211,10 @@ int identify_arm(IdentifyCommand command) {
         {"identify moves the arm by itself, and this arm has not passed the feel check "
          "with this arm file. Run `thimble feel-check` first."},
         kExitBadInput);
+  }
+  fit_defaults(command, chosen->file);
+  if (auto right = bringup::check_places(chosen->file, command.options); !right) {
+    return report_error(right.error(), kExitBadInput);
   }
   if (auto right = bringup::check_forces(chosen->file, command.options); !right) {
     return report_error(right.error(), kExitBadInput);
@@ -234,25 +275,13 @@ int identify_arm(IdentifyCommand command) {
   }
   if (!found) return report_error(found.error(), kExitFault);
   scene::print_format("%s", bringup::constants_table(*found, chosen->file).c_str());
-  if (!command.report.empty()) {
-    const auto written =
-        identified::write_identify_page(*found, chosen->file,
-                                        {.arm = chosen->file.name,
-                                         .device = chosen->name,
-                                         .simulated = !chosen->real_arm,
-                                         .date = today(),
-                                         .program = scene::program_name(),
-                                         .seconds = command.options.seconds,
-                                         .max_force = command.options.max_force,
-                                         .bad_fit_is_written = command.write_bad_fit,
-                                         .known_mass = command.options.known_mass},
-                                        command.report);
-    if (!written) return report_error(written.error(), kExitTrouble);
-    scene::print_format("Report in %s/index.html.\n", command.report.c_str());
-  }
   scene::logger().info("The arm {} was identified{}.", chosen->name,
                        found->against.empty() ? "" : ", with a bad fit");
-  return keep(command, *chosen, *found, writes, stop);
+  // The arm file first: a picture that cannot be drawn must not lose it.
+  const int kept = keep(command, *chosen, *found, writes, stop);
+  if (command.report.empty()) return kept;
+  const int reported = write_report(command, *chosen, *found);
+  return reported == kExitDone ? kept : reported;
 }
 
 }  // namespace
@@ -269,22 +298,26 @@ void add_identify_command(CLI::App& app, int& exit_code) {
                   "Mass to fix to the tip for a second motion, kg")
       ->check(CLI::Range(0.0, 0.06))
       ->group(kMotion);
-  sub->add_option("--seconds", command->options.seconds, "Duration of each motion, s")
-      ->check(CLI::Range(10.0, 600.0))
-      ->capture_default_str()
-      ->group(kMotion);
-  sub->add_option("--places", command->options.places,
-                  "Poses for measuring the link inertia; 0: none")
-      ->check(CLI::Range(3, 9) | CLI::IsMember({0}))
-      ->capture_default_str()
-      ->group(kMotion);
+  CLI::Option* duration =
+      sub->add_option("--duration", command->options.seconds, "Duration of each motion, s")
+          ->check(CLI::Range(10.0, 600.0))
+          ->capture_default_str()
+          ->group(kMotion);
+  add_old_name(*sub, "--seconds", duration, command->options.seconds)
+      ->check(CLI::Range(10.0, 600.0));
+  CLI::Option* places = sub->add_option("--places", command->options.places,
+                                        "Poses for measuring the link inertia; 0: none")
+                            ->check(CLI::Range(3, 9) | CLI::IsMember({0}))
+                            ->capture_default_str()
+                            ->group(kMotion);
   CLI::Option* max_force =
       sub->add_option("--max-force", command->options.max_force, "Largest force of the motion, N")
           ->check(CLI::PositiveNumber)
           ->capture_default_str()
           ->group(kMotion);
-  add_old_name(*sub, "--force-most", max_force, command->options.max_force)
-      ->check(CLI::PositiveNumber);
+  CLI::Option* force_most =
+      add_old_name(*sub, "--force-most", max_force, command->options.max_force)
+          ->check(CLI::PositiveNumber);
   constexpr const char* kOutput = "Output";
   sub->add_option("--output", command->output, "New arm file (default: NAME_identified.yaml here)")
       ->option_text("FILE")
@@ -307,13 +340,18 @@ void add_identify_command(CLI::App& app, int& exit_code) {
               "The arm moves by itself, with small forces.\n"
               "--known-mass  Without it, only ratios of masses and forces are identified.\n"
               "--places      After the motion, the tip moves to these poses of its workspace.\n"
-              "--max-force   At most gate.force_max of the arm file.\n"
+              "              0 for an arm with one or two motors.\n"
+              "--max-force   At most gate.force_max of the arm file, also by default.\n"
               "--yes         Without it, the command asks at a terminal. Without a terminal,\n"
               "              the file is written only with --output or --yes.\n"
               "--record      Use the recording with `thimble twin`.\n"
               "--report      The page also lists the constants that were not identified, with\n"
               "              the reasons.");
-  sub->callback([command, &exit_code] { exit_code = identify_arm(*command); });
+  sub->callback([command, places, max_force, force_most, &exit_code] {
+    command->names_places = places->count() > 0;
+    command->names_max_force = max_force->count() + force_most->count() > 0;
+    exit_code = identify_arm(*command);
+  });
 }
 
 }  // namespace thimble::cli

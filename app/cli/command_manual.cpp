@@ -3,6 +3,7 @@
 #include <cctype>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/commands.h"
@@ -80,6 +81,21 @@ void print_commands(const CLI::App& above, const std::string& prefix) {
   }
 }
 
+/// Prints the example of each command, with what the command does.
+void print_examples(const CLI::App& above) {
+  constexpr std::string_view kBegin = "Example: ";
+  for (const CLI::App* command : above.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_group().empty() || command->get_name().empty()) continue;
+    const std::string footer = command->get_footer();
+    if (footer.starts_with(kBegin)) {
+      const std::string example = footer.substr(kBegin.size(), footer.find('\n') - kBegin.size());
+      scene::print_format(".TP\n.B %s\n%s\n", roff(example).c_str(),
+                          roff(command->get_description()).c_str());
+    }
+    print_examples(*command);
+  }
+}
+
 /// Prints the manual page of a program, with the text of `--help`.
 void print_manual(const CLI::App& program, const std::string& name, const std::string& about) {
   std::string heading = name;
@@ -97,6 +113,8 @@ void print_manual(const CLI::App& program, const std::string& name, const std::s
   print_options(program);
   scene::print_format(".SH COMMANDS\n");
   print_commands(program, "");
+  scene::print_format(".SH EXAMPLES\n");
+  print_examples(program);
   scene::print_format(".SH NOTES\n.nf\n%s\n.fi\n", roff(program.get_footer()).c_str());
 }
 

@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/options/json_option.h"
 #include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "disk_paging/page_file.h"
 #include "log/printed_text.h"
+#include "log/progress.h"
 #include "mesh/contact_mesh.h"
 #include "mesh/file/off_text.h"
 #include "mesh/repair/orient_mesh.h"
@@ -20,6 +22,7 @@
 #include "meshes/object_mesh.h"
 #include "output/output_file.h"
 #include "output/output_plan.h"
+#include "report/json_text.h"
 #include "report/mesh_json.h"
 #include "report/pictures.h"
 #include "text/counted.h"
@@ -35,7 +38,7 @@ struct MeshOptions {
   std::string file;
   std::string picture;
   std::string repair;
-  std::string json;
+  std::string output;
   double thicken = 0;  // in the file's unit; 0: keep open meshes open
 };
 
@@ -165,13 +168,35 @@ void print_remedy(const render::TriangleMesh& mesh, const render::MeshFindings& 
   scene::print_format("  - %s\n", sheets.c_str());
 }
 
-int repair(const render::TriangleMesh& mesh, const MeshOptions& options, Json& json) {
+/// Progress of the steps of this command.
+class MeshSteps {
+ public:
+  explicit MeshSteps(bool repairs) : all_(repairs ? 9 : 4), progress_("mesh") {}
+  void begin(const char* step) {
+    progress_.set_share(begun_++, all_);
+    progress_.set_state(step);
+  }
+  void end() { progress_.set_share(1.0); }
+
+ private:
+  std::size_t begun_ = 0, all_;
+  scene::Progress progress_;
+};
+
+constexpr const char* kCheckStep = "checking edges";
+constexpr const char* kTouchingStep = "searching for parts that touch";
+constexpr const char* kContactStep = "preparing contact";
+
+int repair(const render::TriangleMesh& mesh, const MeshOptions& options, MeshSteps& steps,
+           Json& json) {
+  steps.begin("repairing");
   render::RepairedMesh repaired = render::repair_mesh(mesh);
   json["changes"] = report::changes_json(repaired.changes);
   std::string sheets;
   if (options.thicken > 0 && !repaired.mesh.triangles.empty()) {
     sheets = thicken(repaired.mesh, options.thicken, json);
   }
+  steps.begin("writing");
   const std::string text = render::off_text(repaired.mesh);
   if (auto saved = output::write_file(options.repair, output::kMesh, text); !saved) {
     return report_error(saved.error(), kExitTrouble);
@@ -180,11 +205,15 @@ int repair(const render::TriangleMesh& mesh, const MeshOptions& options, Json& j
   if (repaired.changes.empty() && sheets.empty()) scene::print_format("  no changes\n");
   print(repaired.changes);
   if (!sheets.empty()) scene::print_format("  - %s\n", sheets.c_str());
+  steps.begin(kCheckStep);
   const render::MeshFindings found = render::check_mesh(repaired.mesh);
   json.update(report::mesh_json(found));
   print(found);
+  steps.begin(kTouchingStep);
   print_touching(repaired.mesh, json);
+  steps.begin(kContactStep);
   const int verdict = print_verdict(repaired.mesh, found, json);
+  steps.end();
   if (verdict != kExitDone) print_remedy(repaired.mesh, found, json);
   return verdict;
 }
@@ -249,12 +278,14 @@ int describe_mesh_file(const MeshOptions& options, Json& json) {
   plan.read(options.file);
   plan.write("--picture", options.picture, output::kind_of_name(options.picture));
   plan.write("--repair", options.repair, output::kMesh);
-  plan.write("--json", options.json, output::kJson);
+  plan.write("--output", options.output, output::kJson);
   if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   json["file"] = options.file;
   if (render::is_page_file(options.file)) return describe_pages(options, json);
   render::MeshFileInfo info;
   render::MeshAttributes attributes;
+  MeshSteps steps(!options.repair.empty());
+  steps.begin("reading");
   auto mesh = render::load_mesh_with_attributes(options.file, attributes, &info);
   std::string without_maps;
   if (!mesh) {
@@ -263,6 +294,7 @@ int describe_mesh_file(const MeshOptions& options, Json& json) {
     mesh = render::load_mesh(options.file, &info);
   }
   if (!mesh) return report_error(mesh.error(), kExitBadInput);
+  steps.begin(kCheckStep);
   const render::MeshFindings found = render::check_mesh(*mesh);
   scene::print_format("%s (lengths in the file's unit)\n", options.file.c_str());
   json.update(report::mesh_json(found));
@@ -281,6 +313,7 @@ int describe_mesh_file(const MeshOptions& options, Json& json) {
   }
   for (const std::string& note : info.notes)
     scene::print_format("  note        %s\n", note.c_str());
+  steps.begin(kTouchingStep);
   print_touching(*mesh, json);
   if (!options.picture.empty()) {
     const std::string title = std::filesystem::path(options.file).filename().string();
@@ -291,23 +324,27 @@ int describe_mesh_file(const MeshOptions& options, Json& json) {
     }
     scene::print_format("Picture: %s\n", options.picture.c_str());
   }
+  steps.begin(kContactStep);
   const int verdict = print_verdict(*mesh, found, json);
   if (!options.repair.empty()) {
     json["repaired"] = {{"file", options.repair}};
-    return repair(*mesh, options, json["repaired"]);
+    return repair(*mesh, options, steps, json["repaired"]);
   }
+  steps.end();
   if (verdict != kExitDone) print_remedy(*mesh, found, json);
   return verdict;
 }
 
-// Describes the mesh on the terminal and optionally in a file.
+// Describes the mesh on the terminal, and optionally as JSON and in a file.
 int describe_mesh(const MeshOptions& options) {
   Json json;
   const int verdict = describe_mesh_file(options, json);
   // Without findings (bad arguments, an unreadable file) no file is written.
-  if (options.json.empty() || !json.contains("touchable")) return verdict;
-  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  if (auto saved = output::write_file(options.json, output::kJson, text); !saved) {
+  if (!json.contains("touchable")) return verdict;
+  print_json("mesh", json);
+  if (options.output.empty()) return verdict;
+  const std::string text = report::json_text(json, 2) + "\n";
+  if (auto saved = output::write_file(options.output, output::kJson, text); !saved) {
     return report_error(saved.error(), kExitTrouble);
   }
   return verdict;
@@ -326,7 +363,9 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
       ->option_text("FILE");
   command->add_option("--repair", options->repair, "Write the repaired mesh (OFF)")
       ->option_text("FILE");
-  command->add_option("--json", options->json, "Write the findings as JSON")->option_text("FILE");
+  command->add_option("--output", options->output, "Write the findings as JSON to a file")
+      ->option_text("FILE");
+  add_json_option(*command);
   command
       ->add_option("--thicken", options->thicken,
                    "Give open parts this thickness (unit of the file)")

@@ -9,6 +9,7 @@
 #include "compact_mesh/packed_surface.h"
 #include "disk_paging/page_file.h"
 #include "log/printed_text.h"
+#include "log/progress.h"
 #include "mesh/contact_mesh.h"
 #include "output/output_file.h"
 #include "output/output_plan.h"
@@ -27,18 +28,29 @@ int page_mesh(const PageOptions& options) {
   plan.read(options.in);
   plan.write("OUT", options.out, output::kPageFile);
   if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
+  scene::Progress progress("mesh page");
+  auto begin_step = [&progress, step = std::size_t{0}](const char* name) mutable {
+    constexpr std::size_t kSteps = 4;
+    progress.set_share(step++, kSteps);
+    progress.set_state(name);
+  };
+  begin_step("reading");
   const auto mesh = render::load_mesh(options.in);
   if (!mesh) return report_error(mesh.error(), kExitBadInput);
+  begin_step("checking edges");
   const auto checked = render::ContactMesh::build(*mesh);
   if (!checked) return report_error({options.in + ": " + checked.error().message}, kExitBadInput);
+  begin_step("packing triangles");
   const auto surface = render::PackedSurface::build(*checked);
   if (!surface) return report_error({options.in + ": " + surface.error().message}, kExitBadInput);
   auto file = output::OutputFile::open(options.out, output::kPageFile);
   if (!file) return report_error(file.error(), kExitTrouble);
+  begin_step("writing");
   if (const auto written = render::write_page_file(*surface, file->part()); !written) {
     return report_error(file->named(written.error()), kExitTrouble);
   }
   if (const auto done = file->commit(); !done) return report_error(done.error(), kExitTrouble);
+  progress.set_share(1.0);
   const auto pages =
       (surface->triangle_count() + render::kPageTriangles - 1) / render::kPageTriangles;
   scene::print_format("%s: %s in %s.\n", options.out.c_str(),

@@ -182,6 +182,7 @@ int plug(const PlugOptions& options) {
     const auto file = simulated_file(options.arm_file);
     if (!file) return report_error(file.error(), kExitBadInput);
     shelf.arm = usb::ShelfArm{.model = file->model, .settings = file->simulated};
+    shelf.arm->settings.firmware.described = file->wire;
     gravity_B = file->R_WB.transpose() * Eigen::Vector3d(0, 0, -scene::kGravity);
   }
   auto arm = usb::make_usb_arm(options.arm, shelf);
@@ -248,6 +249,7 @@ int plug(const PlugOptions& options) {
 std::string check_arm_name(const std::string& name) {
   std::vector<std::string> names;
   for (const usb::ShelfEntry& entry : usb::kShelf) names.emplace_back(entry.name);
+  names.emplace_back(usb::kDescribedName);
   if (std::find(names.begin(), names.end(), name) != names.end()) return {};
   std::string known;
   for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
@@ -267,6 +269,7 @@ std::string arm_list() {
   for (const usb::ShelfEntry& entry : usb::kShelf) {
     list += std::string(entry.name) + ": " + std::string(entry.what) + "\n";
   }
+  list += "described: arm of --arm on the HID board that its file describes\n";
   return list;
 }
 

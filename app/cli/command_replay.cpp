@@ -129,13 +129,14 @@ int replay_a_bag(const ReplayOptions& options) {
 /// Prints how the forces of one hand compare with the recorded ones.
 void print_replay(const std::string& file, const session::Replay& replay) {
   const session::ReplayComparison& compared = replay.compared;
-  session::print(stdout, "{}: {} of {} with the recorded motion; ", file,
+  session::print(scene::text_stream(), "{}: {} of {} with the recorded motion; ", file,
                  scene::counted(compared.ticks, "tick"), replay.felt.info.scene);
   if (compared.differing == 0) {
-    session::print(stdout, "all forces are bit-identical to the recorded ones.\n");
+    session::print(scene::text_stream(), "all forces are bit-identical to the recorded ones.\n");
   } else {
     session::print(
-        stdout, "{} forces differ from the recorded ones, first in tick {}, by at most {:.3g} N.\n",
+        scene::text_stream(),
+        "{} forces differ from the recorded ones, first in tick {}, by at most {:.3g} N.\n",
         compared.differing, *compared.first, compared.largest);
   }
 }
@@ -145,14 +146,14 @@ void print_replay(const std::string& file, const session::Replay& replay) {
 bool print_reason(const session::Recording& recording, const std::string& scene) {
   const auto repeatable = session::check_repeatable(recording, scene);
   if (!repeatable) {
-    session::print(stdout, "Reason: {}\n", repeatable.error().message);
+    session::print(scene::text_stream(), "Reason: {}\n", repeatable.error().message);
     return true;
   }
   if (const auto unhashed = session::unhashed_files(recording, scene); !unhashed.empty()) {
-    session::print(stdout, "Reason: {}\n", unhashed);
+    session::print(scene::text_stream(), "Reason: {}\n", unhashed);
     return true;
   }
-  session::print(stdout,
+  session::print(scene::text_stream(),
                  "Scene, options, arm, other files and program are those of the recording, so all "
                  "forces should be "
                  "identical. Please report this error with the recording.\n");
@@ -223,7 +224,7 @@ int replay_recordings(const ReplayOptions& options) {
       return report_error({options.page + " was not written: " + written.error().message},
                           kExitTrouble);
     }
-    session::print(stdout, "Page: {}\n", options.page);
+    session::print(scene::text_stream(), "Page: {}\n", options.page);
   }
   return unexplained || (options.verify && differs) ? kExitTrouble : kExitDone;
 }

@@ -1,5 +1,4 @@
 #include <fmt/core.h>
-#include <unistd.h>
 #include <CLI/CLI.hpp>
 
 #include <chrono>
@@ -16,12 +15,14 @@
 #include "cli/commands.h"
 #include "cli/end_run.h"
 #include "cli/file_options.h"
+#include "cli/options/json_option.h"
 #include "cli/options/run_options.h"
 #include "cli/report_error.h"
 #include "cli/usage/usage_error.h"
 #include "files/scene_inputs.h"
 #include "hold_key.h"
 #include "log/logger.h"
+#include "log/printed_text.h"
 #include "mesh/file/off_text.h"
 #include "open_arm.h"
 #include "output/output_file.h"
@@ -29,6 +30,7 @@
 #include "print.h"
 #include "recording/recording_layout.h"
 #include "replug_watch.h"
+#include "report/figure_json.h"
 #include "report/html/touch_page.h"
 #include "report/report.h"
 #include "report/run_files.h"
@@ -56,7 +58,7 @@ namespace {
 template <class... Args>
 void report(fmt::format_string<Args...> format, Args&&... args) {
   if (scene::verbosity() == scene::Verbosity::kQuiet) return;
-  session::print(stdout, format, std::forward<Args>(args)...);
+  session::print(scene::text_stream(), format, std::forward<Args>(args)...);
 }
 
 /// Prints sentences, one per line.
@@ -152,11 +154,12 @@ ExitCode run_session(session::Session& session, session::ServoThread& servo,
   if (real) watch.emplace(session, key ? key->terminal() : session::user_terminal());
 
   servo.begin(session, stop);
-  const bool shows_progress =
-      isatty(STDERR_FILENO) != 0 && scene::verbosity() != scene::Verbosity::kQuiet;
-  session::RunAttendance attendance(session, watch ? &*watch : nullptr, desk, shows_progress);
+  session::RunAttendance attendance(session, watch ? &*watch : nullptr, desk, true);
   while (!servo.ended()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    // Ten times a second; a short run must not wait for the next time.
+    for (int slice = 0; slice < 20 && !servo.ended(); ++slice) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
     attendance.step();
   }
   attendance.clear();
@@ -238,6 +241,29 @@ driver::Result<void> begin_next(RunContext& context, session::Session& session,
   return session.share(context.asked, before.shared());
 }
 
+/// Prints the result of a finished run as JSON.
+void print_run_json(const session::Session& session, const driver::RealTimeGrant& grant,
+                    const RunContext& context, ExitCode code) {
+  if (!json_asked()) return;
+  nlohmann::ordered_json arms = nlohmann::ordered_json::array();
+  for (std::size_t arm = 0; arm < session.arms(); ++arm) {
+    const session::RunFigures figures = session.figures(grant, arm);
+    const std::string recording =
+        context.recording.empty()
+            ? std::string()
+            : session::file_of_arm(context.recording, session.arm_name(arm)).string();
+    arms.push_back({{"name", session.arm_name(arm)},
+                    {"recording", recording},
+                    {"report", report::report_json(figures)},
+                    {"figures", report::figures_json(session::figures_of(figures))}});
+  }
+  print_json("run", {{"scene", session.scene().name},
+                     {"warnings", session.warnings()},
+                     {"report_folder", context.options.report},
+                     {"exit_code", static_cast<int>(code)},
+                     {"arms", std::move(arms)}});
+}
+
 /// Runs a prepared session to its end. Writes and prints the requested results, unless another run
 /// `then` follows.
 ExitCode run_one(RunContext& context, session::Session& session,
@@ -264,12 +290,12 @@ ExitCode run_one(RunContext& context, session::Session& session,
   const auto object = find_saved_object(session, options);
   if (!object) return leave(report_error(object.error(), kExitBadInput));
   session::NextRun* next = context.next ? &*context.next : nullptr;
-  const auto desk = first
-                        ? session::open_viewer_requests(session, viewer_choice(options),
-                                                        options.ends_with_window(),
-                                                        viewer_arguments(options), next)
-                        : std::make_unique<session::ViewerRequestHandler>(
-                              session, std::move(context.viewer), options.ends_with_window(), next);
+  const auto desk =
+      first ? session::open_viewer_requests(session, viewer_choice(options),
+                                            options.ends_with_window(),
+                                            viewer_arguments(options, context.asked), next)
+            : std::make_unique<session::ViewerRequestHandler>(session, std::move(context.viewer),
+                                                              options.ends_with_window(), next);
   if (!desk) next = nullptr;
   if (next != nullptr) next->begin(session);
   session::ServoThread servo(session.real_time());
@@ -308,6 +334,7 @@ ExitCode run_one(RunContext& context, session::Session& session,
     return report_error(written.error(), kExitTrouble);
   }
   const ExitCode ended = end_of(session, desk && desk->ended());
+  print_run_json(session, servo.grant(), context, ended != kExitDone ? ended : recorded);
   if (ended != kExitDone) return ended;
   if (next != nullptr && next->failed()) return kExitBadInput;
   if (const auto read = session.setup().objects().check_pages(session.scene()); !read) {
@@ -392,16 +419,24 @@ std::string first_sentence(const std::string& text) {
 
 /// Prints the shipped scenes and arms, and ends the program.
 void list_shipped() {
-  const auto print = [](const char* title, const std::vector<scene::ShippedFile>& files) {
-    session::print(stdout, "{}:\n", title);
+  nlohmann::ordered_json listed;
+  const auto print = [&listed](const char* title, const char* key,
+                               const std::vector<scene::ShippedFile>& files) {
+    listed[key] = nlohmann::ordered_json::array();
+    session::print(scene::text_stream(), "{}:\n", title);
     for (const scene::ShippedFile& file : files) {
-      session::print(stdout, "  {:<18} {}\n  {:<18}   {}\n", file.name, file.path.string(), "",
-                     first_sentence(scene::description_of(file.path)));
+      const std::string description = first_sentence(scene::description_of(file.path));
+      session::print(scene::text_stream(), "  {:<18} {}\n  {:<18}   {}\n", file.name,
+                     file.path.string(), "", description);
+      listed[key].push_back(
+          {{"name", file.name}, {"path", file.path.string()}, {"description", description}});
     }
-    if (files.empty()) session::print(stdout, "  none found; use the path of a file\n");
+    if (files.empty())
+      session::print(scene::text_stream(), "  none found; use the path of a file\n");
   };
-  print("Scenes", scene::shipped_scenes());
-  print("Arms", scene::shipped_arms());
+  print("Scenes", "scenes", scene::shipped_scenes());
+  print("Arms", "arms", scene::shipped_arms());
+  print_json("list", listed);
   throw CLI::Success();
 }
 
@@ -410,11 +445,10 @@ void list_shipped() {
 void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "Run a scene with a simulated or a real arm");
   auto options = std::make_shared<RunOptions>();
-  command
-      ->add_flag_callback("--list", list_shipped,
-                          "List the scenes and arms that have a name, then exit")
-      ->trigger_on_parse();
   add_run_options(*command, *options);
+  // After --json, whose callback decides how the list is printed.
+  command->add_flag_callback("--list", list_shipped,
+                             "List the scenes and arms that have a name, then exit");
   command->callback([options, &exit_code] { exit_code = run_scene(*options); });
 }
 

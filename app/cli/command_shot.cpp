@@ -11,6 +11,8 @@
 
 #include "cli/commands.h"
 #include "cli/file_options.h"
+#include "cli/options/old_names.h"
+#include "cli/options/theme_option.h"
 #include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "files/scene_inputs.h"
@@ -46,6 +48,7 @@ struct ShotOptions {
   bool contact = false;
   bool trail = false;
   bool surfaces = false;
+  bool collision = false;
   std::string theme = "light";
   bool no_arm = false;
   bool no_caption = false;
@@ -78,7 +81,7 @@ bool is_png(const std::filesystem::path& file) {
 /// nothing is.
 std::string output_error(const ShotOptions& options) {
   if (!options.out.empty() && !is_png(options.out)) {
-    return "--out: expected a file name that ends in .png, found " + options.out + ".";
+    return "--output: expected a file name that ends in .png, found " + options.out + ".";
   }
   if (!options.animate.empty() && !is_png(options.animate) &&
       !view::is_animation(options.animate)) {
@@ -120,8 +123,8 @@ int write_animation(const std::vector<view::Picture>& pictures, const ShotOption
   if (!written) return report_error(written.error(), kExitTrouble);
   std::error_code unknown;
   const std::uintmax_t bytes = std::filesystem::file_size(options.animate, unknown);
-  session::print(stdout, "Animation: {} ({}, {} of {} x {}, {:.3g} s{})\n", options.animate,
-                 by_ffmpeg ? "by ffmpeg" : "animated PNG",
+  session::print(scene::text_stream(), "Animation: {} ({}, {} of {} x {}, {:.3g} s{})\n",
+                 options.animate, by_ffmpeg ? "by ffmpeg" : "animated PNG",
                  scene::counted(pictures.size(), "picture"), pictures.front().width,
                  pictures.front().height, frame_time * static_cast<double>(pictures.size()),
                  unknown ? std::string() : fmt::format(", {} kB", (bytes + 999) / 1000));
@@ -150,7 +153,7 @@ int take_shot(const ShotOptions& options) {
   }
   if (options.out.empty() && options.animate.empty()) {
     return report_error(
-        {"--out FILE.png or --animate FILE (.mp4, .gif or .png) is missing. Add one of them."},
+        {"--output FILE.png or --animate FILE (.mp4, .gif or .png) is missing. Add one of them."},
         kExitBadInput);
   }
   const std::string span = options.at ? span_error(options, *options.at) : std::string();
@@ -166,7 +169,7 @@ int take_shot(const ShotOptions& options) {
   output::OutputPlan plan;
   plan.read(options.arm_file);
   for (const auto& file : scene::scene_inputs(options.scene)) plan.read(file);
-  plan.write("--out", options.out, output::kPng);
+  plan.write("--output", options.out, output::kPng);
   plan.write("--animate", options.animate,
              view::is_animation(options.animate) ? output::kAnimation : output::kPng);
   if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
@@ -181,6 +184,7 @@ int take_shot(const ShotOptions& options) {
   choice.paint.fields = options.fields;
   choice.paint.trail = options.trail;
   choice.paint.surfaces = options.surfaces;
+  choice.paint.colliders = options.collision;
   choice.paint.theme = options.theme == "dark" ? view::Theme::kDark : view::Theme::kLight;
   choice.plots = options.plots;
   choice.caption = !options.no_caption;
@@ -238,9 +242,10 @@ void add_shot_command(CLI::App& app, int& exit_code) {
   add_scene_option(*command, options->scene)->required();
   add_arm_option(*command, options->arm_file, "Arm file to use instead of the scene's");
   constexpr const char* kOutput = "Output";
-  command->add_option("--out", options->out, "Picture to write")
-      ->option_text("FILE.png")
-      ->group(kOutput);
+  CLI::Option* output = command->add_option("--output", options->out, "Picture to write")
+                            ->option_text("FILE.png")
+                            ->group(kOutput);
+  add_old_name(*command, "--out", output, options->out);
   CLI::Option* animate =
       command->add_option("--animate", options->animate, "Animation to write: .mp4, .gif or .png")
           ->option_text("FILE")
@@ -269,10 +274,7 @@ void add_shot_command(CLI::App& app, int& exit_code) {
       ->option_text("YAW PITCH [ZOOM]")
       ->expected(2, 3)
       ->group(kLook);
-  command->add_option("--theme", options->theme, "Colour theme")
-      ->check(CLI::IsMember({"light", "dark"}))
-      ->capture_default_str()
-      ->group(kLook);
+  add_theme_option(*command, options->theme, "Colour theme")->capture_default_str()->group(kLook);
   command->add_option("--shading", options->shading, "Shading per pixel, or per vertex")
       ->check(CLI::IsMember({"phong", "gouraud"}))
       ->capture_default_str()
@@ -299,6 +301,8 @@ void add_shot_command(CLI::App& app, int& exit_code) {
                  "Show the last 4 s of the tip's path, coloured by force")
       ->group(kShow);
   command->add_flag("--surfaces", options->surfaces, "Mark surfaces with texture or friction")
+      ->group(kShow);
+  command->add_flag("--collision", options->collision, "Show the shapes that collide")
       ->group(kShow);
   command->add_flag("--plots", options->plots, "Plot force and depth over time below the picture")
       ->group(kShow);

@@ -9,10 +9,13 @@
 
 #include "cli/commands.h"
 #include "cli/file_options.h"
+#include "cli/options/json_option.h"
+#include "cli/options/old_names.h"
 #include "cli/report_error.h"
 #include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "output/output_plan.h"
+#include "report/figure_json.h"
 #include "ros2/ros_latency.h"
 #include "stability/tuning.h"
 #include "thimble/driver/clock.h"
@@ -54,7 +57,7 @@ int tune_scene(const TuneCommand& command) {
   output::OutputPlan plan;
   plan.read(command.scene);
   plan.read(command.arm_file);
-  plan.write_folder("--out", command.folder, {"figures.json"}, /*plots=*/false);
+  plan.write_folder("--output", command.folder, {"figures.json"}, /*plots=*/false);
   if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto scene = scene::load_scene(command.scene, {.arm = command.arm_file});
   if (!scene) return report_error(scene.error(), kExitBadInput);
@@ -97,9 +100,12 @@ int tune_scene(const TuneCommand& command) {
     }
     scene::print_format("Written to %s.\n", file.c_str());
   }
+  print_json("tune", {{"scene", command.scene},
+                      {"advice", tuned->text},
+                      {"figures", report::figures_json(tuned->figures)}});
   const std::string unmet = report::unmet_line(tuned->figures);
   if (unmet.empty()) return kExitDone;
-  scene::print_format("%s\n", unmet.c_str());
+  scene::print_toned(scene::Tone::kBad, unmet + "\n");
   return kExitUnmet;
 }
 
@@ -111,8 +117,11 @@ void add_tune_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<TuneCommand>();
   add_scene_option(*command, options->scene)->required();
   add_arm_option(*command, options->arm_file, "Arm file to use instead of the scene's");
-  command->add_option("--out", options->folder, "Write figures.json to this folder")
-      ->option_text("DIR");
+  CLI::Option* output =
+      command->add_option("--output", options->folder, "Write figures.json to this folder")
+          ->option_text("DIR");
+  add_old_name(*command, "--out", output, options->folder);
+  add_json_option(*command);
   CLI::Option* spread =
       command
           ->add_option("--spread", options->spread_us, "Standard deviation of the loop period, us")

@@ -80,7 +80,7 @@ int compare(const TwinCommand& command) {
   }
   const std::string unmet = report::unmet_line(figures);
   if (unmet.empty()) return kExitDone;
-  scene::print_format("%s\n", unmet.c_str());
+  scene::print_toned(scene::Tone::kBad, unmet + "\n");
   return kExitUnmet;
 }
 

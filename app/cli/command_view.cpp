@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/options/theme_option.h"
 #include "cli/parts/part.h"
 #include "cli/report_error.h"
 #include "cli/usage/help_text.h"
@@ -34,6 +35,7 @@ constexpr std::chrono::seconds kNextRunTimeout{10};
 
 struct ViewOptions {
   std::vector<std::string> shown;  // a run, or recordings
+  bool start = false;
   bool list = false;
   bool text = false;
   bool web = false;
@@ -49,8 +51,9 @@ struct ViewOptions {
   std::string record;
   bool record_stop = false;
   double seconds = 0;  // 0: no limit
+  std::string theme;   // empty: of the window light, of a page that of the browser
 
-  /// Returns the name of the run; empty: the newest.
+  /// Returns the name of the run, or the file of --start; empty: the newest run, or no file.
   std::string run() const { return shown.empty() ? "" : shown.front(); }
   bool has_requests() const {
     return !turn.empty() || pause || resume || stop || !record.empty() || record_stop || restart ||
@@ -215,7 +218,8 @@ int serve(const ViewOptions& options) {
   if (auto libraries = report::read_page_libraries(); !libraries) {
     return report_error(libraries.error(), kExitBadInput);
   }
-  scene::print_format("Open %s\n", (*server)->address().c_str());
+  const std::string theme = options.theme.empty() ? "" : "#theme=" + options.theme;
+  scene::print_format("Open %s%s\n", (*server)->address().c_str(), theme.c_str());
   std::string last_notice;
   const auto end =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(options.seconds);
@@ -273,10 +277,29 @@ int view_recordings(const ViewOptions& options, const ShowWindow& show_window) {
          "text, use `thimble export`."},
         kExitBadInput);
   }
-  return show_window.recordings(options.shown, options.seconds);
+  return show_window.recordings(options.shown, options.seconds, options.theme);
+}
+
+int open_start_window(const ViewOptions& options, const ShowWindow& show_window) {
+  if (options.is_for_runs()) {
+    return report_error({"--start opens a window in which a run is chosen. Remove the options that "
+                         "control a run."},
+                        kExitBadInput);
+  }
+  if (options.shown.size() > 1) {
+    return report_error({"--start: expected one file. Open the others in the window."},
+                        kExitBadInput);
+  }
+  if (!show_window.start) {
+    return report_error({"The window is not installed: " + how_to_get(kViewer) +
+                         "; or run a scene in the terminal: `thimble run SCENE`."},
+                        kExitBadInput);
+  }
+  return show_window.start(options.run(), options.seconds, options.theme);
 }
 
 int show(const ViewOptions& options, const ShowWindow& show_window) {
+  if (options.start) return open_start_window(options, show_window);
   if (std::any_of(options.shown.begin(), options.shown.end(), is_recording)) {
     return view_recordings(options, show_window);
   }
@@ -293,8 +316,12 @@ int show(const ViewOptions& options, const ShowWindow& show_window) {
                          "; or use `thimble view --text` or `thimble view --web`."},
                         kExitBadInput);
   }
+  // Without a run, a window on the next one would be blank.
+  if (options.shown.empty() && session::running_runs().empty()) {
+    return open_start_window(options, show_window);
+  }
   session::RunAttachment runs(options.run());
-  return show_window.runs(runs, options.seconds);
+  return show_window.runs(runs, options.seconds, options.theme);
 }
 
 }  // namespace
@@ -305,6 +332,8 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
   command->add_option("RUN", options->shown,
                       "Run to show (default: the newest), or recordings (.h5)");
   constexpr const char* kViewing = "Viewing";
+  command->add_flag("--start", options->start, "Open the start window, to choose a scene or a file")
+      ->group(kViewing);
   command->add_flag("--list", options->list, "List the runs and their knobs, then exit")
       ->group(kViewing);
   CLI::Option* text =
@@ -323,6 +352,10 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
       ->group(kViewing);
   command->add_option("--for", options->seconds, "Exit after N seconds")
       ->check(CLI::Range(0.1, 86400.0))
+      ->group(kViewing);
+  add_theme_option(*command, options->theme,
+                   "Colour theme (default: window light, page as the browser)")
+      ->excludes(text)
       ->group(kViewing);
   constexpr const char* kControl = "Control the run, then exit";
   command->add_option("--turn", options->turn, "Set knobs of the run")
@@ -377,6 +410,10 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
       ->group(kSave);
   add_example(*command, "thimble view elephant --pause",
               "RUN  If the scene has several arms, name the recordings of all arms.\n"
+              "     Without RUN, and without an active run, the start window opens. The window\n"
+              "     waits for a RUN that is not active.\n"
+              "--start  RUN is then a scene, mesh or recording to open, or may be absent. A\n"
+              "     run that the window starts ends with it.\n"
               "--step, --speed, --restart and --scene require a simulated arm.\n"
               "--save-knobs prints the path of the new file. It is next to the scene file; for\n"
               "a scene that came with Thimble, it is in your own scenes folder.\n"

@@ -15,11 +15,15 @@ class RunAttachment;
 
 namespace thimble::cli {
 
-/// Opens windows until the user closes them, or for the given seconds if they are above 0, and
-/// returns the exit code; empty in a program without windows.
+/// Opens windows in a theme (light or dark) until the user closes them, or for the given seconds if
+/// they are above 0, and returns the exit code; empty in a program without windows.
 struct ShowWindow {
-  std::function<int(session::RunAttachment& runs, double seconds)> runs;
-  std::function<int(const std::vector<std::string>& files, double seconds)> recordings;
+  std::function<int(session::RunAttachment& runs, double seconds, const std::string& theme)> runs;
+  std::function<int(const std::vector<std::string>& files, double seconds,
+                    const std::string& theme)>
+      recordings;
+  /// Opens the start window, with a file or the name of a scene selected if `open` is not empty.
+  std::function<int(const std::string& open, double seconds, const std::string& theme)> start;
 };
 
 // One function per command of the program (commands.inc). Each adds its sub-command with options

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdio>
 
+#include "log/printed_text.h"
 #include "print.h"
 #include "thimble/session/run_figures.h"
 
@@ -17,8 +18,8 @@ bool zero_assured(const session::Session& session) {
 
 void print_summaries(const session::Session& session, const driver::RealTimeGrant& grant) {
   for (std::size_t arm = 0; arm < session.arms(); ++arm) {
-    if (session.arms() > 1) session::print(stdout, "--- {}\n", session.arm_name(arm));
-    session::print(stdout, "{}", summary(session.figures(grant, arm)));
+    if (session.arms() > 1) session::print(scene::text_stream(), "--- {}\n", session.arm_name(arm));
+    session::print(scene::text_stream(), "{}", summary(session.figures(grant, arm)));
   }
 }
 

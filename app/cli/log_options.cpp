@@ -4,6 +4,7 @@
 
 #include "cli/options/old_names.h"
 #include "log/logger.h"
+#include "log/progress.h"
 #include "thimble/scene/build_info.h"
 
 namespace thimble::cli {
@@ -12,6 +13,7 @@ namespace {
 struct LogOptions {
   int more = 0;
   bool quiet = false;
+  bool progress = false, no_progress = false;  // neither: shown at a terminal
   std::string file;
 
   scene::Verbosity verbosity() const {
@@ -19,6 +21,11 @@ struct LogOptions {
     return more == 0   ? scene::Verbosity::kNormal
            : more == 1 ? scene::Verbosity::kDebug
                        : scene::Verbosity::kTrace;
+  }
+  scene::ProgressChoice progress_choice() const {
+    if (progress) return scene::ProgressChoice::kAlways;
+    return no_progress || quiet ? scene::ProgressChoice::kNever
+                                : scene::ProgressChoice::kIfTerminal;
   }
 };
 
@@ -38,6 +45,10 @@ void add_log_options(CLI::App& program, const std::string& command_line) {
   program.add_flag("-v,--verbose", options->more,
                    "Print the log on the terminal; -vv: every event");
   program.add_flag("-q,--quiet", options->quiet, "Print errors only")->excludes("--verbose");
+  CLI::Option* const progress =
+      program.add_flag("--progress", options->progress, "Show progress (default: at a terminal)");
+  program.add_flag("--no-progress", options->no_progress, "Never show progress")
+      ->excludes(progress);
   program.add_option("--log", options->file, "Log file (default: see `thimble doctor`)")
       ->option_text("FILE");
   fall_through(program);
@@ -46,6 +57,7 @@ void add_log_options(CLI::App& program, const std::string& command_line) {
                                          .file = options->file,
                                          .heading = scene::program_name() + ": " + command_line});
     if (!begun) throw CLI::ValidationError("--log", begun.error().message);
+    scene::choose_progress(options->progress_choice());
     warn_of_old_names(program);
   });
 }

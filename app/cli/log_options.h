@@ -5,9 +5,9 @@
 
 namespace thimble::cli {
 
-/// Adds the options -v, --quiet and --log to the program; they are accepted before and after any
-/// command. Logging begins after they are parsed and before a command runs. `command_line` is the
-/// first line of the log.
+/// Adds the options -v, --quiet, --progress and --log to the program; they are accepted before and
+/// after any command. Logging begins after they are parsed and before a command runs.
+/// `command_line` is the first line of the log.
 void add_log_options(CLI::App& program, const std::string& command_line);
 
 }  // namespace thimble::cli

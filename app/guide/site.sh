@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds the guide as web pages with mkdocs (Debian: mkdocs). Dead links and pages that are in no menu
 # are errors.
-#   app/guide/site.sh [FOLDER]      FOLDER: where to write, build/guide by default; open index.html there
+#   app/guide/site.sh [FOLDER [PROGRAM]]      FOLDER: where to write, build/guide by default; open index.html there.
+#       PROGRAM: also writes the gallery of the shipped scenes (app/guide/gallery.sh), about 50 MB
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 out=$(realpath -m "${1:-$here/../../build/guide}")
@@ -32,4 +33,11 @@ for picture in "$here"/pages/pictures/*; do
   }
 done
 [ $failed = 0 ] || exit 1
+# The gallery, or a page that says how to make it, so that the link to it is never dead.
+if [ $# -gt 1 ]; then
+  bash "$here/gallery.sh" "$2" "$out/gallery"
+else
+  mkdir -p "$out/gallery"
+  echo '<!doctype html><html lang="en"><meta charset="utf-8"><title>Gallery</title><p>This copy of the guide has no gallery. <code>app/guide/gallery.sh</code> writes it; <a href="../gallery.html">back</a>.</p></html>' >"$out/gallery/index.html"
+fi
 echo "$(ls "$out"/*.html | wc -l) pages: $out/index.html"

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "bringup/push_direction.h"
 #include "bringup/watchdog_time.h"
 
 namespace thimble::hil {
@@ -18,7 +19,8 @@ HilResult check_watchdog_time(const HilRig& rig) {
       .mass = rig.file.simulated.plant.mass,
       .coulomb = rig.file.simulated.plant.coulomb,
       .delay = static_cast<double>(wire.delay_in_ns + wire.delay_out_ns) * 1e-9,
-      .workspace = rig.file.workspace};
+      .workspace = rig.file.workspace,
+      .direction_W = bringup::push_direction(rig.file)};
   auto opened = open_active(rig, TipHold::kFree);
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
   bringup::BenchArm& bench = **opened;

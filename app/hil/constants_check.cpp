@@ -92,10 +92,12 @@ HilResult check_constants(const HilRig& rig, const HilOptions& suite) {
   bringup::IdentifyOptions options;
   options.seconds = suite.full ? 60 : 15;
   options.known_mass = suite.known_mass;
+  options.max_force = bringup::default_max_force(rig.file);
   // A user needs time to release the mass.
   if (suite.known_mass > 0 && suite.attended) options.lead = 4;
   // Links of the file are visible only over the workspace.
-  if (rig.file.simulated.links.named()) options.places = 5, options.place_seconds = 2;
+  if (rig.file.simulated.links.named() && rig.file.motors() == 3)
+    options.places = 5, options.place_seconds = 2;
   driver::Fault fault = driver::Fault::kNone;
   options.watch = [&fault](const driver::TickRecord& tick) { fault = tick.fault; };
   const auto found = bringup::identify(open, rig.file, options, rig.stop);
@@ -128,15 +130,17 @@ HilResult check_constants(const HilRig& rig, const HilOptions& suite) {
       difference("weight", is.weight, weight, std::max(kTenth * std::abs(weight), kWeight)));
   const std::string tilt = add_tilt(*found, suite.known_mass, down_B, figures);
   figures.push_back(difference("delay", is.delay, delay, kDelay));
-  for (std::size_t i = 0; i < 3; ++i) {
+  std::string gains;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(rig.file.motors()); ++i) {
     figures.push_back(difference(fmt::format("gain_{}", i + 1).c_str(), is.gain[i], 1, kTenth));
+    gains += fmt::format("{}{:.3f}", i == 0 ? "" : ", ", is.gain[i].value);
   }
   std::string text = fmt::format(
       "{}, dry friction {:.1f} mN ({:.1f}), viscous {:.3f} N s/m ({:.3f}), weight {:.1f} mN "
-      "({:.1f}), delay {:.2f} ms ({:.2f}), gains {:.3f}, {:.3f}, {:.3f} of the file's.{}",
+      "({:.1f}), delay {:.2f} ms ({:.2f}), {} {} of the file's.{}",
       masses, 1e3 * is.coulomb.value, 1e3 * plant.coulomb, is.viscous.value, plant.viscous,
-      1e3 * is.weight.value, 1e3 * weight, 1e3 * is.delay.value, 1e3 * delay, is.gain[0].value,
-      is.gain[1].value, is.gain[2].value, tilt);
+      1e3 * is.weight.value, 1e3 * weight, 1e3 * is.delay.value, 1e3 * delay,
+      rig.file.motors() == 1 ? "gain" : "gains", gains, tilt);
   for (const std::string& sentence : found->against) text += " " + sentence;
   figures.push_back({"model_misfits", static_cast<double>(found->against.size()), "", "== 0", ""});
   HilResult result = judged(kName, text, std::move(figures));

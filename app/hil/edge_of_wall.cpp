@@ -58,8 +58,9 @@ struct Start {
 /// One wall in front of a free tip: settle, kick, spring, and the result.
 class Trial {
  public:
-  Trial(int axis, const Start& start, double mass, double stiffness, const Vector3d& p_WT)
-      : axis_(axis), start_(start), mass_(mass), stiffness_(stiffness), hold_(p_WT) {
+  Trial(const Vector3d& direction_W, const Start& start, double mass, double stiffness,
+        const Vector3d& p_WT)
+      : direction_W_(direction_W), start_(start), mass_(mass), stiffness_(stiffness), hold_(p_WT) {
     // Whole ticks, and the force that reaches the speed within them.
     kick_ = kTick * std::max(1.0, std::ceil(mass * start.speed / kKickForce / kTick));
     kick_force_ = mass * start.speed / kick_;
@@ -73,19 +74,19 @@ class Trial {
     p_last_W_ = state.p_WT;
     Vector3d f_W = hold_.force(kTick, state.p_WT, state.v_WT);
     if (time < kSettle || over_) return shortened(f_W);
-    f_W[axis_] = 0;
+    f_W -= direction_W_.dot(f_W) * direction_W_;
     if (time < kSettle + kick_) {
-      f_W[axis_] = kick_force_;
+      f_W += kick_force_ * direction_W_;
       return shortened(f_W);
     }
     if (!walled_) {
       walled_ = true;
-      place_ = state.p_WT[axis_] + start_.offset;
+      place_ = direction_W_.dot(state.p_WT) + start_.offset;
       given_ = 0;
     } else {
       given_ += f_sent_W.dot(way);
     }
-    const double away = state.p_WT[axis_] - place_;
+    const double away = direction_W_.dot(state.p_WT) - place_;
     const double since = time - kSettle - kick_;
     if (since < window_) first_.add(away);
     if (since > watched_ - window_) last_.add(away);
@@ -98,7 +99,7 @@ class Trial {
       hold_.go_to(state.p_WT);
       return {0, 0, 0};
     }
-    f_W[axis_] = -stiffness_ * away;
+    f_W -= stiffness_ * away * direction_W_;
     return shortened(f_W);
   }
 
@@ -114,14 +115,14 @@ class Trial {
     return length > kForceMax ? Vector3d(f_W * (kForceMax / length)) : f_W;
   }
 
-  int axis_;
+  Vector3d direction_W_;
   Start start_;
   double mass_, stiffness_;
   double kick_force_ = 0;                       // N
   double kick_ = 0, window_ = 0, watched_ = 0;  // s
   bringup::HoldPlace hold_;
   bool walled_ = false, over_ = false, grew_ = false;
-  double place_ = 0;             // of the wall along the axis, m
+  double place_ = 0;             // of the wall along the direction, m
   double given_ = 0;             // J
   double max_energy_given_ = 0;  // J
   Oscillation first_, last_;     // in the first and in the last window
@@ -198,7 +199,7 @@ class Search {
   }
 
   driver::Result<bool> grew(const Start& start, double stiffness) {
-    Trial trial(search_.axis, start, mass_, stiffness, p_start_W_);
+    Trial trial(search_.direction_W, start, mass_, stiffness, p_start_W_);
     const double begin = bench_.now();
     const auto law = [&](const driver::DeviceState& state) -> Vector3d {
       const Vector3d& f_sent_W = bench_.device().f_sent_W();

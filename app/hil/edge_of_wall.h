@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <atomic>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace thimble::hil {
 
 /// Parameters of the search for the stiffest wall that a free arm renders stably.
 struct EdgeSearch {
-  int axis = 1;  ///< Axis of the world along which the tip oscillates: y, where no weight acts.
+  /// Unit vector of the world along which the tip oscillates (`bringup::push_direction`).
+  Eigen::Vector3d direction_W{0, 1, 0};
   double speed = 0.03;      ///< Mean speed of the tip at the wall after a kick, m/s.
   double speed_span = 0.2;  ///< Total range of the starts' speeds, relative to the mean.
   double first = 100;       ///< First stiffness, N/m.
@@ -44,9 +46,9 @@ struct EdgeOfWall {
 /// arm is tested with the same starts. A wall grew if the oscillation some periods later is as wide
 /// as at the beginning. It also grew if it gave the tip ten times the energy of the kick (an
 /// observer sums force times motion). It is then removed within that tick. A tip that moves more
-/// than 6 mm away also ends the search. The other axes are held weakly. No force exceeds 0.95 N.
-/// The device is idle before and after. Fails on a fault, if the tip does not stay, or if even the
-/// first wall grows. Real-time: never from the servo thread.
+/// than 6 mm away also ends the search. The tip is held weakly across that direction. No force
+/// exceeds 0.95 N. The device is idle before and after. Fails on a fault, if the tip does not stay,
+/// or if even the first wall grows. Real-time: never from the servo thread.
 driver::Result<EdgeOfWall> find_edge_of_wall(bringup::BenchArm& bench, const scene::ArmFile& file,
                                              const EdgeSearch& search,
                                              const std::atomic<bool>& stop);

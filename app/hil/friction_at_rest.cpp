@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bringup/hold_place.h"
+#include "bringup/push_direction.h"
 #include "object_sections.h"
 #include "stability/friction_rig.h"
 #include "stability/rest_trial.h"
@@ -42,6 +43,13 @@ std::unique_ptr<render::AnyStage> default_friction(const scene::ArmFile& file) {
 }  // namespace
 
 HilResult check_friction_at_rest(const HilRig& rig) {
+  if (rig.file.motors() == 1) {
+    return skipped(
+        kName, "The tip of an arm with one motor moves on a line, so it has no surface to rub.");
+  }
+  // Along x with three motors: the surface's normal is z, and rubbing needs one axis only.
+  const Vector3d direction_W =
+      rig.file.motors() == 3 ? Vector3d(Vector3d::UnitX()) : bringup::push_direction(rig.file);
   auto opened = open_active(rig, TipHold::kFree);
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
   bringup::BenchArm& bench = **opened;
@@ -54,10 +62,10 @@ HilResult check_friction_at_rest(const HilRig& rig) {
   double slid = 0;
   const auto law = [&](const driver::DeviceState& state) -> Vector3d {
     const double time = bench.now() - begin;
-    lead.go_to(p_start_W + kWay * std::min(1.0, time / kRubbed) * Vector3d::UnitX());
+    lead.go_to(p_start_W + kWay * std::min(1.0, time / kRubbed) * direction_W);
     slid = std::max(slid, (state.p_WT - p_start_W).norm());
-    sent.push_back(bench.device().f_sent_W().x());
-    x.push_back(state.p_WT.x());
+    sent.push_back(direction_W.dot(bench.device().f_sent_W()));
+    x.push_back(direction_W.dot(state.p_WT));
     // The hand holds the surface's force, so that only friction is requested.
     Vector3d f_W = surface(state).f_T_W;
     f_W += lead.force(1 / kRate, state.p_WT, state.v_WT);

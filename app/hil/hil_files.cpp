@@ -53,8 +53,7 @@ std::string in_xml(std::string_view text) {
 
 }  // namespace
 
-driver::Result<void> write_hil_json(const HilRecord& record, const std::vector<HilResult>& results,
-                                    const std::filesystem::path& file) {
+Json hil_json(const HilRecord& record, const std::vector<HilResult>& results) {
   Json checks = Json::array();
   for (const HilResult& result : results) {
     checks.push_back(Json{{"name", result.name},
@@ -63,16 +62,21 @@ driver::Result<void> write_hil_json(const HilRecord& record, const std::vector<H
                           {"seconds", result.seconds},
                           {"figures", report::figures_json(result.figures)}});
   }
-  const Json whole{{"arm", record.arm},
-                   {"arm_file", record.arm_file},
-                   {"simulated", record.simulated},
-                   {"suite", record.suite},
-                   {"time", record.time},
-                   {"end", record.end},
-                   {"exit_code", record.exit_code},
-                   {"not_tested", record.not_tested},
-                   {"checks", std::move(checks)}};
-  return output::write_file(file, output::kJson, report::json_text(whole, 2) + "\n");
+  return {{"arm", record.arm},
+          {"arm_file", record.arm_file},
+          {"simulated", record.simulated},
+          {"suite", record.suite},
+          {"time", record.time},
+          {"end", record.end},
+          {"exit_code", record.exit_code},
+          {"not_tested", record.not_tested},
+          {"checks", std::move(checks)}};
+}
+
+driver::Result<void> write_hil_json(const HilRecord& record, const std::vector<HilResult>& results,
+                                    const std::filesystem::path& file) {
+  return output::write_file(file, output::kJson,
+                            report::json_text(hil_json(record, results), 2) + "\n");
 }
 
 driver::Result<void> write_hil_junit(const HilRecord& record, const std::vector<HilResult>& results,

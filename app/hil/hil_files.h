@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,11 @@ struct HilRecord {
   int exit_code = -1;                     ///< Exit code of the program; -1 while it runs.
 };
 
-/// Writes the results as JSON: the record's members, and "checks", a list of {"name", "outcome",
-/// "text", "seconds", "figures"} with figures as `write_figures` writes them. The error names the
-/// file.
+/// Returns the results as JSON: the record's members, and "checks", a list of {"name", "outcome",
+/// "text", "seconds", "figures"} with figures as `write_figures` writes them.
+nlohmann::ordered_json hil_json(const HilRecord& record, const std::vector<HilResult>& results);
+
+/// Writes the results as `hil_json`. The error names the file.
 driver::Result<void> write_hil_json(const HilRecord& record, const std::vector<HilResult>& results,
                                     const std::filesystem::path& file);
 

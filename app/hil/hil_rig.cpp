@@ -17,7 +17,9 @@ driver::Result<std::unique_ptr<bringup::BenchArm>> open_simulated(const scene::A
                          "arm or a linkage: --arm vintage_phantom, polhem or woodenhaptics."};
   }
   if (hold == TipHold::kHand) {
-    return bringup::BenchArm::open(file, {}, {}, bringup::feel_check_hand({0, 0, 0}), kHilForceMax);
+    return bringup::BenchArm::open(
+        file, {}, {}, bringup::feel_check_hand({0, 0, 0}, bringup::feel_check_axes(file)),
+        kHilForceMax);
   }
   if (hold == TipHold::kFree) return bringup::simulated_bench(file, 0);
   if (hold == TipHold::kMass) return bringup::simulated_bench(file, options.known_mass);

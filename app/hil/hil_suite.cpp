@@ -76,10 +76,11 @@ HilResult check_feel(const HilRig& rig, const HilOptions& options) {
     passed += one.passed ? 1 : 0;
     if (!one.passed) text += (text.empty() ? "" : " ") + one.name + ": " + one.text;
   }
-  if (text.empty()) text = fmt::format("{} of {} steps passed.", passed, bringup::kFeelChecks);
+  if (text.empty())
+    text = fmt::format("{} of {} steps passed.", passed, bringup::feel_checks(rig.file));
   HilResult result = judged(kName, text,
                             {{"steps_passed", static_cast<double>(passed), "",
-                              fmt::format("== {}", bringup::kFeelChecks), ""}});
+                              fmt::format("== {}", bringup::feel_checks(rig.file)), ""}});
   return result;
 }
 

@@ -6,13 +6,14 @@
 #include <cmath>
 #include <vector>
 
+#include "bringup/push_direction.h"
+
 namespace thimble::hil {
 namespace {
 
 using Eigen::Vector3d;
 
 constexpr const char* kName = "force_accuracy";
-constexpr int kAxis = 1;
 constexpr double kForceMax = 0.9;  // N
 constexpr int kSteps = 9;          // up, and as many down
 constexpr double kStep_s = 0.7;    // s, of each
@@ -44,14 +45,19 @@ HilResult check_tied_spring(const HilRig& rig, double stiffness) {
     return skipped(kName, "No spring stiffness was given (--spring).");
   }
   if (!rig.attended) return skipped(kName, "A person must tie the spring to the tip (--attended).");
-  if (!rig.prompt("Tie the spring to the tip and to a fixed point, along y (to your right), "
-                  "without slack or tension, and let go.")) {
+  const Vector3d direction_W = bringup::push_direction(rig.file);
+  const std::string along = std::abs(direction_W.y()) == 1
+                                ? "y (to your right)"
+                                : fmt::format("the direction ({:.2g}, {:.2g}, {:.2g}) of the world",
+                                              direction_W.x(), direction_W.y(), direction_W.z());
+  if (!rig.prompt("Tie the spring to the tip and to a fixed point, along " + along +
+                  ", without slack or tension, and let go.")) {
     return skipped(kName, "The prompt was cancelled.");
   }
   auto opened = open_active(rig, TipHold::kSpring);
   if (!opened) return broken_off(kName, opened.error().message, nullptr);
   bringup::BenchArm& bench = **opened;
-  const double from = bench.device().state().p_WT[kAxis];
+  const Vector3d p_start_W = bench.device().state().p_WT;
   std::vector<Vector3d> rows;  // requested force, and whether it was on the way up or down
   std::vector<double> way;     // m
   for (int i = 1; i < 2 * kSteps; ++i) {
@@ -62,15 +68,15 @@ HilResult check_tied_spring(const HilRig& rig, double stiffness) {
     int seen = 0;
     bool off = false;
     const auto law = [&](const driver::DeviceState& state) -> Vector3d {
-      const double gone = state.p_WT[kAxis] - from;
+      const double gone = direction_W.dot(state.p_WT - p_start_W);
       off = off || !(std::abs(gone) < kFar);
       if (off) return {0, 0, 0};
       if (bench.now() - begin > kStep_s - kLooked_s) {
         sum += gone;
-        sent += bench.device().f_sent_W()[kAxis];
+        sent += direction_W.dot(bench.device().f_sent_W());
         ++seen;
       }
-      return (asked - kDamping * state.v_WT[kAxis]) * Vector3d::Unit(kAxis);
+      return (asked - kDamping * direction_W.dot(state.v_WT)) * direction_W;
     };
     if (!bench.run(kStep_s, law, rig.stop)) return broken_off(kName, "", &bench);
     if (off) {

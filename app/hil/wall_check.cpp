@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bringup/identify/simulated_bench.h"
+#include "bringup/push_direction.h"
 #include "hil/edge_of_wall.h"
 
 namespace thimble::hil {
@@ -32,7 +33,8 @@ MedianInterval over_twin(const EdgeOfWall& found, const EdgeOfWall& twin) {
 }  // namespace
 
 HilResult check_stiffest_wall(const HilRig& rig, bool full) {
-  EdgeSearch search{.starts = full ? kStartsOfFull : kStartsOfQuick};
+  EdgeSearch search{.direction_W = bringup::push_direction(rig.file),
+                    .starts = full ? kStartsOfFull : kStartsOfQuick};
   const double law = edge_by_law(rig.file, search.speed);
   search.first = std::max(20.0, 0.25 * law);
   auto twin_bench = bringup::simulated_bench(rig.file, 0);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "bringup/identify/line_forces.h"
 #include "identified/plot_tables.h"
@@ -25,29 +26,40 @@ std::string quiet(const char* more) {
   return report::quiet_style() + "set key off\nset tics font ',14'\n" + more;
 }
 
-/// Returns the gnuplot text of three panels on top of each other, with a title on the left of each.
-std::string stacked(const std::string& commands, const std::string& unit,
-                    const std::array<std::string, 3>& plots) {
-  std::string text = quiet("set tmargin 0.6\nset bmargin 0.6\nset lmargin 11\nset rmargin 2\n") +
-                     commands +
-                     "set multiplot layout 3,1 margins 0.09,0.985,0.11,0.97 spacing 0.03\n";
-  for (std::size_t i = 0; i < 3; ++i) {
+/// Returns the height of a plot of stacked panels, pixels: that of each panel, and of the time
+/// axis.
+int stacked_height(std::size_t panels) {
+  return 120 + 200 * static_cast<int>(panels);
+}
+
+/// Returns the gnuplot text of panels on top of each other, one for each axis along which the tip
+/// moves, with a title on the left of each.
+std::string stacked(const std::string& unit, const std::vector<std::string>& plots) {
+  const double height = stacked_height(plots.size());
+  std::string text =
+      quiet("set tmargin 0.6\nset bmargin 0.6\nset lmargin 11\nset rmargin 2\n") +
+      fmt::format("set multiplot layout {},1 margins 0.09,0.985,{:.4g},{:.4g} spacing {:.4g}\n",
+                  plots.size(), 79 / height, 1 - 22 / height, 22 / height);
+  for (std::size_t i = 0; i < plots.size(); ++i) {
     text += fmt::format("set ylabel '{} [{}]' font ',15'\n", "xyz"[i], unit);
-    text += i == 2 ? "set format x '%g'\nset xlabel 'time [s]' font ',15'\n" : "set format x ''\n";
+    text += i + 1 == plots.size() ? "set format x '%g'\nset xlabel 'time [s]' font ',15'\n"
+                                  : "set format x ''\n";
     text += plots[i] + "\n";
   }
   return text + "unset multiplot\n";
 }
 
-/// Returns the gnuplot text of three panels side by side, one for each joint or axis.
+/// Returns the gnuplot text of at most three panels side by side, one for each joint or axis.
 std::string side_by_side(const std::string& commands, const std::string& x, const std::string& y,
-                         const std::array<std::string, 3>& plots,
+                         const std::vector<std::string>& plots,
                          const std::array<const char*, 3>& titles = {"joint 1", "joint 2",
                                                                      "joint 3"}) {
-  std::string text = quiet("") + commands +
-                     "set multiplot layout 1,3 margins 0.085,0.985,0.2,0.885 spacing 0.055\n";
+  std::string text =
+      quiet("") + commands +
+      fmt::format("set multiplot layout 1,{} margins 0.085,0.985,0.2,0.885 spacing 0.055\n",
+                  plots.size());
   text += fmt::format("set xlabel '{}' font ',15'\n", x);
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < plots.size(); ++i) {
     text += fmt::format("set title '{}' font ',16'\n", titles[i]);
     text += i == 0 ? fmt::format("set ylabel '{}' font ',15' offset 1.5,0\n", y) : "unset ylabel\n";
     text += plots[i] + "\n";
@@ -55,20 +67,20 @@ std::string side_by_side(const std::string& commands, const std::string& x, cons
   return text + "unset multiplot\n";
 }
 
-std::string fit_plot() {
-  std::array<std::string, 3> plots;
-  for (std::size_t i = 0; i < 3; ++i) {
+std::string fit_plot(std::size_t motors) {
+  std::vector<std::string> plots(motors);
+  for (std::size_t i = 0; i < motors; ++i) {
     plots[i] = fmt::format(
         "plot 'data/identify_fit.dat' index {0} using 1:2 with points pt 7 ps 0.75 lc rgb '{1}', "
         "'data/identify_fit.dat' index {0} using 1:3 with lines lw 2 lc rgb '{2}'",
         i, kSeenInk, kFitInk);
   }
-  return stacked("", "m/s²", plots);
+  return stacked("m/s²", plots);
 }
 
-std::string rest_plot(double noise) {
-  std::array<std::string, 3> plots;
-  for (std::size_t i = 0; i < 3; ++i) {
+std::string rest_plot(std::size_t motors, double noise) {
+  std::vector<std::string> plots(motors);
+  for (std::size_t i = 0; i < motors; ++i) {
     plots[i] = fmt::format(
         "plot 'data/identify_rest.dat' index {} using 1:2 with points pt 7 ps 0.22 lc rgb '{}', "
         "{:.5g} "
@@ -76,12 +88,12 @@ std::string rest_plot(double noise) {
         "lines lw 1.5 dt 2 lc rgb '{}', {:.5g} with lines lw 1.5 dt 2 lc rgb '{}'",
         i, kFitInk, 2 * noise, kMarkInk, -2 * noise, kMarkInk);
   }
-  return stacked("", "m/s²", plots);
+  return stacked("m/s²", plots);
 }
 
-std::string friction_plot() {
-  std::array<std::string, 3> plots;
-  for (std::size_t i = 0; i < 3; ++i) {
+std::string friction_plot(std::size_t motors) {
+  std::vector<std::string> plots(motors);
+  for (std::size_t i = 0; i < motors; ++i) {
     plots[i] = fmt::format(
         "plot 'data/identify_friction.dat' index {0} using 1:(1e3*$2) with points pt 7 ps 0.2 lc "
         "rgb '#d5dae0', 'data/identify_friction_medians.dat' index {0} using "
@@ -95,7 +107,7 @@ std::string friction_plot() {
 }
 
 std::string masses_plot() {
-  std::array<std::string, 3> plots;
+  std::vector<std::string> plots(3);
   for (std::size_t i = 0; i < 3; ++i) {
     plots[i] = fmt::format(
         "plot 'data/identify_masses.dat' index {0} using (1e3*$1):(1e3*$1) with lines lw 2 lc rgb "
@@ -107,7 +119,7 @@ std::string masses_plot() {
 }
 
 std::string lines_plot(const bringup::Identified& identified) {
-  std::array<std::string, 3> plots;
+  std::vector<std::string> plots(3);
   for (std::size_t i = 0; i < 3; ++i) {
     std::string marks = "unset arrow\nunset label\n";
     if (identified.constants.cables) {
@@ -175,7 +187,10 @@ driver::Result<std::vector<IdentifyPlot>> draw_identified(const bringup::Identif
     shown.back().caption +=
         " The friction of the motors, which was fitted separately, is subtracted.";
   }
-  std::vector<std::string> commands{fit_plot(), rest_plot(identified.bare.noise), friction_plot()};
+  // Absent motors have no data to plot.
+  const auto motors = static_cast<std::size_t>(file.motors());
+  std::vector<std::string> commands{fit_plot(motors), rest_plot(motors, identified.bare.noise),
+                                    friction_plot(motors)};
   if (lines) {
     shown.push_back(
         {"identify_lines", "Cables: response to 48 small forces",
@@ -194,7 +209,8 @@ driver::Result<std::vector<IdentifyPlot>> draw_identified(const bringup::Identif
   }
   if (!report::has_gnuplot()) return std::vector<IdentifyPlot>{};
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    const report::Plot plot{shown[i].name, kWidth, i < 2 ? 720 : 480, commands[i]};
+    const report::Plot plot{shown[i].name, kWidth, i < 2 ? stacked_height(motors) : 480,
+                            commands[i]};
     if (auto drawn = report::draw_plot(plot, folder); !drawn) return drawn.error();
   }
   return shown;

@@ -71,7 +71,7 @@ set(CPACK_COMPONENT_UDEV_GROUP program)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_SOURCE_DIR}/postinst")  # udev reads the rules again
 
 string(CONCAT development "${same_version}, libeigen3-dev, libusb-1.0-0-dev, libhidapi-dev, libassimp-dev, zlib1g-dev, libpng-dev, "
-    "libfmt-dev, libyaml-cpp-dev, libhdf5-dev, libsqlite3-dev, libbullet-dev, libspdlog-dev, pkg-config")
+    "libfmt-dev, libyaml-cpp-dev, libhdf5-dev, libsqlite3-dev, libbullet-dev, libmuparser-dev, libspdlog-dev, pkg-config")
 thimble_package(libthimble-dev COMPONENT dev SECTION libdevel DEPENDS "${development}" DESCRIPTION
 "libraries and headers to build on Thimble
 The driver of 3-DOF force-feedback arms, the simulated arm, the haptic
@@ -81,10 +81,10 @@ CMake package, a pkg-config file and small numbered examples.")
 # OpenGL is opened at run time.
 if(TARGET thimble_viewer_program)
   thimble_package(thimble-viewer COMPONENT viewer LIBRARIES DEPENDS "${same_version}"
-    RECOMMENDS "libegl1, libegl-mesa0, libgl1, libgl1-mesa-dri" SUGGESTS ffmpeg DESCRIPTION
+    RECOMMENDS "libegl1, libegl-mesa0, libgl1, libgl1-mesa-dri" SUGGESTS "ffmpeg, zenity" DESCRIPTION
 "window and pictures of runs of Thimble
-The window of `thimble view`, which shows a run or a recording, plays its sound
-and moves the simulated hand; and the pictures and animations of
+The start window of scenes and the window of `thimble view`, which shows a run
+or a recording, plays its sound and moves the simulated hand; and the pictures and animations of
 `thimble shot`.")
 endif()
 
@@ -124,7 +124,7 @@ if(THIMBLE_HAS_PYTHON)
   string(CONCAT python_needs "${same_version}, python3-numpy, "
          "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${python_next})")
   thimble_package(python3-thimble COMPONENT python SECTION python LIBRARIES DEPENDS "${python_needs}"
-    SUGGESTS "thimble-viewer, thimble-studies, python3-matplotlib, python3-numba, jupyter-notebook" DESCRIPTION
+    SUGGESTS "thimble-viewer, thimble-studies, python3-matplotlib, python3-numba, python3-tk, jupyter-notebook" DESCRIPTION
 "feel virtual objects from Python
 The scenes, simulated arms, recordings and studies of Thimble as numpy arrays:
 whole runs in virtual time, tick by tick, or watched in real time.")

@@ -4,6 +4,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "scene_run.h"
 #include "stability/tuning.h"
+#include "thimble/render/scene_touch.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/shared_meshes.h"
 #include "thimble/session/session_batch.h"
@@ -77,6 +79,29 @@ class PythonBatch {
     });
   }
 
+  /// Returns the poses of some objects in each run, (n, objects, 7): position and quaternion w x y
+  /// z.
+  py::array_t<double> bodies(const std::vector<std::string>& objects) const {
+    if (busy_) throw ThimbleError("These arms are already being stepped.");
+    std::vector<std::size_t> numbers;
+    for (const std::string& name : objects) {
+      const auto number = first().find_object(name);
+      if (!number) throw ArgumentError("bodies: the scene has no object \"" + name + "\".");
+      numbers.push_back(static_cast<std::size_t>(*number));
+    }
+    py::array_t<double> poses({static_cast<py::ssize_t>(size()),
+                               static_cast<py::ssize_t>(objects.size()), py::ssize_t{7}});
+    double* to = poses.mutable_data();
+    for (std::size_t i = 0; i < size(); ++i) {
+      for (const std::size_t number : numbers) {
+        const render::BodyPose pose = batch_->run(i).touch().object(number).pose();
+        to = std::copy(pose.p_WB.begin(), pose.p_WB.end(), to);
+        to = std::copy(pose.q_WB.begin(), pose.q_WB.end(), to);
+      }
+    }
+    return poses;
+  }
+
  private:
   template <class Work>
   void run_exclusively(const Work& work) {
@@ -121,6 +146,15 @@ void bind_batch(py::module_& core) {
       .def("__len__", &PythonBatch::size)
       .def("step", &PythonBatch::step, py::arg("ticks"), py::arg("hands") = py::none())
       .def("restart", &PythonBatch::restart, py::arg("which"), py::arg("seeds"))
+      .def("bodies", &PythonBatch::bodies, py::arg("objects"))
+      .def_property_readonly("moving",
+                             [](const PythonBatch& held) {
+                               std::vector<std::string> names;
+                               for (const auto& object : held.first().scene().objects) {
+                                 if (object.body.motion) names.push_back(object.name);
+                               }
+                               return names;
+                             })
       .def("warnings",
            [](const PythonBatch& held) {
              return stability::stability_warnings(held.first().scene());

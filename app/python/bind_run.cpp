@@ -144,6 +144,23 @@ py::tuple mesh_of(const PythonRun& held, const std::optional<std::string>& objec
   return py::make_tuple(vertices, triangles);
 }
 
+/// Returns the poses of the objects that move, by name: position and quaternion w x y z.
+py::dict bodies_of(const PythonRun& held) {
+  if (held.run->running())
+    throw ThimbleError("The run has not ended. Call stop() before you read its bodies.");
+  const session::Session& session = held.run->session();
+  const auto& objects = session.scene().objects;
+  py::dict bodies;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (!objects[i].body.motion) continue;
+    const render::BodyPose pose = session.touch().object(i).pose();
+    bodies[py::str(objects[i].name)] =
+        py::make_tuple(py::array_t<double>(py::ssize_t{3}, pose.p_WB.data()),
+                       py::array_t<double>(py::ssize_t{4}, pose.q_WB.data()));
+  }
+  return bodies;
+}
+
 /// Returns the index of an arm given by Python.
 std::size_t arm_of(const PythonRun& held, std::size_t arm) {
   if (arm >= held.run->session().arms())
@@ -276,6 +293,10 @@ void bind_run(py::module_& core) {
       .def("topics_report", [](const PythonRun& held) { return held.run->topics_report(); })
       .def("run", &run_all)
       .def("step", &step_once, py::arg("hand") = py::none())
+      .def("hold_buttons",
+           [](PythonRun& held, std::uint16_t buttons) {
+             return held.run->session().hold_buttons(buttons);
+           })
       .def("start", [](PythonRun& held) { held.run->start(); })
       .def("stop",
            [](PythonRun& held) {
@@ -340,6 +361,7 @@ void bind_run(py::module_& core) {
                                }
                                return trackers;
                              })
+      .def_property_readonly("bodies", &bodies_of)
       .def_property_readonly("objects", [](const PythonRun& held) {
         std::vector<std::string> names;
         for (const auto& object : held.run->session().scene().objects) names.push_back(object.name);

@@ -20,6 +20,7 @@
 #include "thimble/driver/fault.h"
 #include "thimble/scene/arm_simulation.h"
 #include "thimble/scene/build_info.h"
+#include "thimble/scene/real_arm.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/shipped_files.h"
 #include "thimble/session/recording.h"
@@ -51,7 +52,7 @@ using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 py::list devices() {
   py::list list;
-  for (const driver::FoundArm& arm : value_of(driver::find_arms())) {
+  for (const driver::FoundArm& arm : value_of(scene::find_arms())) {
     py::dict one;
     one["name"] = arm.name();
     one["arm"] = arm.arm;
@@ -143,6 +144,9 @@ PYBIND11_MODULE(_core, core) {
   }
   core.attr("version") = std::string(scene::build_info().version);
   core.attr("program") = scene::program_name();
+  core.attr("pybind11_version") = std::to_string(PYBIND11_VERSION_MAJOR) + "." +
+                                  std::to_string(PYBIND11_VERSION_MINOR) + "." +
+                                  PYBIND11_TOSTRING(PYBIND11_VERSION_PATCH);
   core.def("scenes", [] { return named(scene::shipped_scenes()); });
   core.def("arms", [] { return named(scene::shipped_arms()); });
   core.def("find_scene",

@@ -57,7 +57,7 @@ session::SessionOptions session_options(const RunOptions& options) {
   const auto plugged_in =
       options.device == "sim"
           ? driver::Result<std::vector<driver::FoundArm>>(std::vector<driver::FoundArm>())
-          : driver::find_arms();
+          : scene::find_arms();
   asked.real_arm = named_by(scene::choose_arm(
       plugged_in ? *plugged_in : std::vector<driver::FoundArm>(), options.device));
   if (options.device == "auto" && !asked.real_arm) {
@@ -99,6 +99,7 @@ session::SessionOptions session_options(const RunOptions& options) {
   asked.clock = real_time ? session::ClockKind::kWall : session::ClockKind::kVirtual;
   asked.duration = options.seconds;
   asked.seed = options.seed;
+  asked.buttons_by_program = true;
   asked.firmware = options.firmware;
   asked.record = options.record;
   asked.overwrite = options.overwrite;

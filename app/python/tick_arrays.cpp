@@ -2,7 +2,10 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
+#include <vector>
 
 namespace py = pybind11;
 
@@ -53,11 +56,40 @@ const py::dtype& tick_type() {
   return *type;
 }
 
+/// A range of bytes of a record.
+struct Gap {
+  std::size_t offset, size;
+};
+
+/// Returns the bytes of a tick that no column covers: padding, whose values are arbitrary.
+std::vector<Gap> find_gaps() {
+  std::array<bool, sizeof(TickRecord)> covered{};
+  for (const session::RecordingColumn& column : session::recording_columns()) {
+    // The digit of numpy's type is its size.
+    const auto size = static_cast<std::size_t>(numpy_type(column)[1] - '0') * column.width;
+    std::fill_n(covered.begin() + static_cast<std::ptrdiff_t>(column.offset), size, true);
+  }
+  std::vector<Gap> gaps;
+  for (std::size_t byte = 0; byte < covered.size(); ++byte) {
+    if (covered[byte]) continue;
+    if (gaps.empty() || gaps.back().offset + gaps.back().size != byte) gaps.push_back({byte, 0});
+    ++gaps.back().size;
+  }
+  return gaps;
+}
+
 }  // namespace
 
+// The padding is cleared, so that the bytes of equal ticks are equal.
 py::array array_of(std::span<const TickRecord> ticks) {
+  static const std::vector<Gap> gaps = find_gaps();
   py::array array(tick_type(), static_cast<py::ssize_t>(ticks.size()));
-  if (!ticks.empty()) std::memcpy(array.mutable_data(), ticks.data(), ticks.size_bytes());
+  if (ticks.empty()) return array;
+  std::memcpy(array.mutable_data(), ticks.data(), ticks.size_bytes());
+  auto* bytes = static_cast<unsigned char*>(array.mutable_data());
+  for (std::size_t tick = 0; tick < ticks.size(); ++tick, bytes += sizeof(TickRecord)) {
+    for (const Gap& gap : gaps) std::memset(bytes + gap.offset, 0, gap.size);
+  }
   return array;
 }
 

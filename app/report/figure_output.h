@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "thimble/driver/result.h"
-#include "thimble/session/figure.h"
+#include "thimble/session/run_figures.h"
 
 namespace thimble::report {
 

@@ -29,7 +29,9 @@ Json to_json(const session::Histogram& histogram) {
           {"max", microseconds(static_cast<double>(histogram.max_ns()))}};
 }
 
-Json to_json(const session::RunFigures& report) {
+}  // namespace
+
+Json report_json(const session::RunFigures& report) {
   const scene::BuildInfo build = scene::build_info();
   const session::RunStatistics& run = report.statistics;
   Json json;
@@ -94,6 +96,13 @@ Json to_json(const session::RunFigures& report) {
   if (report.walls.pushed > 0) {
     json["walls"]["side"] = session::wall_side(report.walls.f_strongest_W);
   }
+  if (report.motors < 3) {
+    const Eigen::Vector3d& f_W = report.missing_force.f_strongest_W;
+    json["motors"] = report.motors;
+    json["force_not_given"] = {{"ticks", report.missing_force.ticks},
+                               {"max_N", f_W.norm()},
+                               {"strongest_N", {f_W.x(), f_W.y(), f_W.z()}}};
+  }
   if (report.carried_weight > 0) {
     json["carried_weight_N"] = report.carried_weight;
     json["gravity_compensation"] = {{"trusted", report.carry_withdrawn == 0},
@@ -115,8 +124,6 @@ Json to_json(const session::RunFigures& report) {
   return json;
 }
 
-}  // namespace
-
 driver::Result<void> write_report(const session::RunFigures& report,
                                   const std::filesystem::path& folder) {
   std::error_code status;
@@ -125,7 +132,7 @@ driver::Result<void> write_report(const session::RunFigures& report,
     return driver::Error{"Cannot create the folder " + folder.string() + ": " + status.message() +
                          "."};
   }
-  if (auto done = write_json(to_json(report), folder / "report.json"); !done) return done;
+  if (auto done = write_json(report_json(report), folder / "report.json"); !done) return done;
   return write_figures(session::figures_of(report), folder / "figures.json");
 }
 

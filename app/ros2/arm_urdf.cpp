@@ -148,6 +148,12 @@ std::string arm_urdf(const scene::ArmFile& arm, const std::string& world_frame,
     writer.joint(1, "yaw", "front_bar", aside, left);
     writer.bar("crank", {linkage->length_2, 0, 0});
     writer.joint(2, "yaw", "crank", -aside, left);
+  } else if (const auto* five_bar = std::get_if<driver::FiveBarArm>(&arm.model.geometry)) {
+    const Eigen::Vector3d aside(five_bar->base / 2, 0, 0);
+    writer.bar("crank_1", {five_bar->crank_1, 0, 0});
+    writer.joint(0, "base", "crank_1", -aside, up);
+    writer.bar("crank_2", {five_bar->crank_2, 0, 0});
+    writer.joint(1, "base", "crank_2", aside, up);
   }
   return std::move(writer).take();
 }

@@ -2,6 +2,7 @@
 
 #include <cctype>
 #include <numbers>
+#include <set>
 
 namespace thimble::ros2 {
 
@@ -48,6 +49,20 @@ std::string frame_name_of(const std::string& text) {
   std::string word;
   for (const char c : text) word += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
   return word.empty() ? "_" : word;
+}
+
+std::vector<std::string> object_frames(const std::vector<std::string>& names) {
+  std::vector<std::string> frames;
+  std::set<std::string> used;
+  for (const std::string& name : names) {
+    const std::string frame = "object_" + frame_name_of(name);
+    std::string own = frame;
+    for (int number = 2; !used.insert(own).second; ++number) {
+      own = frame + "_" + std::to_string(number);
+    }
+    frames.push_back(own);
+  }
+  return frames;
 }
 
 std::array<double, 3> to_style(RosStyle style, const std::array<double, 3>& v_W) noexcept {

@@ -33,6 +33,10 @@ const RosNames& ros_names(RosStyle style) noexcept;
 /// Returns a name that is valid for ROS 2 frames and a URDF: only letters, digits and _.
 std::string frame_name_of(const std::string& text);
 
+/// Returns a frame for each object of a scene, by its name. Names that are equal as frames get a
+/// number, so that each object has its own frame.
+std::vector<std::string> object_frames(const std::vector<std::string>& names);
+
 /// Converts a vector of the world (frame W: x to the user, y to the right, z up) to the axes of a
 /// style. Those of the Omni's drivers are x to the right, y away from the user, z up [S
 /// bharatm11/Geomagic_Touch_ROS_Drivers omni_state.cpp]. Real-time: safe.

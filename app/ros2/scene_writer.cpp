@@ -13,8 +13,11 @@ constexpr std::array<double, 4> kNotTurned{1, 0, 0, 0};
 
 SceneWriter::SceneWriter(dds_entity_t participant, const RosOptions& options, const RosScene& scene)
     : options_(options), scene_(scene) {
-  for (const RosObject& object : scene.objects) {
-    frames_.push_back(object.moves ? "object_" + frame_name_of(object.name) : options.world_frame);
+  std::vector<std::string> names;
+  for (const RosObject& object : scene.objects) names.push_back(object.name);
+  frames_ = object_frames(names);
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    if (!scene.objects[i].moves) frames_[i] = options.world_frame;
   }
   if (scene.objects.empty()) return;
   const dds_entity_t writer =

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "body/motion/move_object.h"
 #include "math/elementary.h"
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
@@ -93,6 +94,19 @@ void warn_of_facets(const scene::SceneObject& object, std::vector<std::string>& 
                   object.name, concave_angle / kDegree, 2 * math::sin(concave_angle / 2)));
 }
 
+/// Returns the mass of a body, kg; 0 if its mesh cannot be read.
+double mass_of(const scene::SceneObject& object) {
+  const render::MotionChoice& motion = *object.body.motion;
+  if (!motion.density) return motion.mass;
+  const auto inside = [&](const render::TriangleMesh& mesh_W) {
+    const auto mass = render::mass_of(mesh_W, motion);
+    return mass ? *mass : 0;
+  };
+  if (object.shape) return inside(object.shape->mesh_W());
+  const auto file = scene::load_object_mesh(object);
+  return file ? inside(file->mesh_W) : 0;
+}
+
 /// Limits of a loop with the hand of the scene.
 struct Loop {
   const scene::Scene& scene;
@@ -131,6 +145,13 @@ void warn_of_effects(const scene::SceneObject& object, const Loop& loop, double 
           "{:.0f} N/m or less.",
           object.name, hold, loop.scene.arms.front().arm.simulated.hand.damping, bare_edge,
           0.7 * bare_edge));
+    } else if (effect.kind->group == "law") {
+      const double added = effect.build()->spring_stiffness(), edge = loop.edge(object.damping);
+      if (!(added > 0 && object.stiffness + added > edge)) continue;
+      warnings.push_back(fmt::format(
+          "{}: its formula adds up to {:.0f} N/m to the stiffness of {:.0f} N/m, but the loop is "
+          "stable up to {:.0f} N/m with this arm and hand. Reduce one of them.",
+          object.name, added, object.stiffness, edge));
     }
   }
 }
@@ -149,7 +170,9 @@ void warn_of_light_body(const scene::SceneObject& object, const Loop& loop,
     if (effect.kind->group == "friction") hold = std::max(hold, hold_of(effect));
   }
   const StabilityLimits carried = stability_limits(loop.scene.arms.front().arm, loop.times, 0, 0);
-  const double felt = motion.kind == render::MotionKind::kRigid ? motion.mass / 3.5 : motion.mass;
+  const double mass = mass_of(object);
+  if (!(mass > 0)) return;
+  const double felt = motion.kind == render::MotionKind::kRigid ? mass / 3.5 : mass;
   const double share =
       felt / (felt + carried.tip.mass + loop.scene.arms.front().arm.simulated.hand.mass);
   const double damping =
@@ -159,7 +182,7 @@ void warn_of_light_body(const scene::SceneObject& object, const Loop& loop,
       fmt::format("{} has a mass of {:.3g} kg and a friction of {:.0f} N/m. The hand hardly "
                   "damps the oscillation of such a light body, and the loop is stable up to "
                   "{:.0f} N/m. Increase its mass or damping, or reduce the friction's stiffness.",
-                  object.name, motion.mass, hold, damping / carried.latency));
+                  object.name, mass, hold, damping / carried.latency));
 }
 
 /// Warns of springs that add up where a tip touches all of them, although each of them is stable by
@@ -294,7 +317,7 @@ std::vector<std::string> energy_warnings(const scene::Scene& scene) {
       warn(object.name + " pushes the hand", try_field(object, scene.arms.front().arm).push);
     } else if (object.body.motion && object.body.motion->grip) {  // on the floor it does not pull
       warn(object.name + " pulls the hand down by its weight",
-           object.body.motion->mass * object.body.motion->gravity_W.norm());
+           mass_of(object) * object.body.motion->gravity_W.norm());
     }
   }
   return warnings;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "energy_guard_settings.h"
+#include "log/progress.h"
 #include "stability/rest_trial.h"
 #include "stability/rest_warnings.h"
 #include "stability/wall_trial.h"
@@ -212,9 +213,14 @@ std::string advice(const scene::Scene& scene, const scene::SceneObject& object,
                     1e3 * scene::loop_delay(scene.arms.front().arm));
 }
 
+// Shares of the time of `tune` after the rests with the hand of the scene, and after the walls of
+// all objects; the rest is other hands [chosen].
+constexpr double kFirstRestsShare = 0.2, kWallsShare = 0.5;
+
 /// Adds how the hand of the scene rested in `trial`, and how hands of other firmness rest.
 void report_rests(const scene::Scene& scene, const RestTrial& trial,
-                  const std::shared_ptr<scene::SharedMeshes>& meshes, TuneResult& result) {
+                  const std::shared_ptr<scene::SharedMeshes>& meshes, scene::Progress& progress,
+                  TuneResult& result) {
   const device_sim::HandSettings& own = scene.arms.front().arm.simulated.hand;
   for (const Rest& rest : trial.rests) {
     result.text +=
@@ -249,8 +255,11 @@ void report_rests(const scene::Scene& scene, const RestTrial& trial,
     if (others.size() > 2) others.pop_back();
     others.emplace_back("worst hand in this range", carried.worst_hand);
   }
+  std::size_t tried = 0;
   for (const auto& [words, hand] : others) {
     const auto found = try_rests(scene, hand, meshes);
+    progress.set_share(kWallsShare + (1 - kWallsShare) * static_cast<double>(++tried) /
+                                         static_cast<double>(others.size()));
     if (!found) continue;
     const Rest* const most = found->worst();
     if (most == nullptr) continue;
@@ -367,10 +376,12 @@ std::vector<std::string> stability_warnings(const scene::Scene& scene) {
 }
 
 driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& options) {
+  scene::Progress progress("tune");
   const auto meshes = std::make_shared<scene::SharedMeshes>();  // shared by all hands
   // First, because a scene that cannot be opened fails here.
   const auto trial = try_rests(scene, scene.arms.front().arm.simulated.hand, meshes);
   if (!trial) return trial.error();
+  progress.set_share(kFirstRestsShare);
   TuneResult result;
   const scene::ArmFile& arm = scene.arms.front().arm;
   const scene::LoopTimes times = loop_times(arm, scene.rate, options.period_spread);
@@ -406,6 +417,7 @@ driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& op
                     {"bristle_stiffness", bare.bristle_stiffness, "N/m", ""},
                     {"bristle_length_per_newton", 1e3 / bare.bristle_stiffness, "mm/N", ""}};
   if (options.topics) report_topics(scene, times, *options.topics, result);
+  std::size_t objects_done = 0;
   for (const scene::SceneObject& object : scene.objects) {
     if (object.build_field || !(object.stiffness > 0)) continue;
     const StabilityLimits carried = stability_limits(arm, times, object.stiffness, object.damping);
@@ -451,11 +463,14 @@ driver::Result<TuneResult> tune(const scene::Scene& scene, const TuneOptions& op
     result.figures.push_back({name + ".margin", margin, "1", fmt::format(">= {:g}", 1 / kShare)});
     result.text += fmt::format("  margin    {:.2f}; up to {:.0f} N/m is safe here{}\n", margin,
                                safe, object.stiffness <= safe ? "." : "; reduce the stiffness.");
+    progress.set_share(kFirstRestsShare + (kWallsShare - kFirstRestsShare) *
+                                              static_cast<double>(++objects_done) /
+                                              static_cast<double>(scene.objects.size()));
   }
   for (const std::string& warning : stability_warnings(scene)) {
     result.text += "Warning   " + warning + "\n";
   }
-  report_rests(scene, *trial, meshes, result);
+  report_rests(scene, *trial, meshes, progress, result);
   return result;
 }
 

@@ -3,9 +3,11 @@
 #include <fmt/core.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include "thimble/session/servo_thread.h"
 #include "thimble/session/session.h"
@@ -73,7 +75,8 @@ double stiffness_lost(const session::Histogram& period) {
 }
 
 driver::Result<RateBench> bench_rate(const std::filesystem::path& scene, double rate,
-                                     double seconds, scene::Quality quality) {
+                                     double seconds, scene::Quality quality,
+                                     const std::function<void(double)>& passed) {
   session::SessionOptions options;
   options.clock = session::ClockKind::kWall;
   options.duration = seconds;
@@ -88,7 +91,13 @@ driver::Result<RateBench> bench_rate(const std::filesystem::path& scene, double 
   bench.rate = rate;
   const std::atomic<bool> stop{false};
   session::ServoThread servo(true);
+  const auto begin = std::chrono::steady_clock::now();
   servo.begin(session, stop);
+  while (passed && !servo.ended()) {
+    // Seldom, because it shares the processor with the loop that is measured [chosen].
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    passed(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
   const driver::ServoEnd end = servo.join();
   bench.period = session.statistics().period();
   bench.lateness = session.statistics().lateness();

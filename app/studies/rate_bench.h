@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,11 +31,12 @@ struct RateVerdict {
 };
 
 /// Touches a scene with the simulated arm in wall-clock time for `seconds` at `rate` (Hz), with a
-/// quality. The error describes what is wrong with the scene. Real-time: never from the servo
-/// thread.
+/// quality. `passed`, if any, is called ten times a second with the time since the start, s. The
+/// error describes what is wrong with the scene. Real-time: never from the servo thread.
 driver::Result<RateBench> bench_rate(const std::filesystem::path& scene, double rate,
                                      double seconds,
-                                     scene::Quality quality = scene::Quality::kNormal);
+                                     scene::Quality quality = scene::Quality::kNormal,
+                                     const std::function<void(double)>& passed = {});
 
 /// Assesses a result: sufficient if 999 of 1000 ticks end within their period, and the stiffness
 /// lost by uneven ticks cannot be felt.

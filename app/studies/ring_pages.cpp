@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "disk_paging/page_file.h"
+#include "log/progress.h"
 
 namespace thimble::studies {
 namespace {
@@ -201,7 +202,10 @@ driver::Result<void> write_ring(const BumpyRing& ring, const RingGrid& grid,
     return corners[index(i, kCornersAcross, j)];
   };
   std::vector<render::PackedTriangle> page(render::kPageTriangles);
+  scene::Progress progress("mesh generate");
   for (std::int32_t number = 0; number < numbers.pages(); ++number) {
+    progress.set_share(static_cast<std::size_t>(number) + 1,
+                       static_cast<std::size_t>(numbers.pages()));
     const std::int32_t i0 = numbers.first_around(number), j0 = numbers.first_across(number);
     for (std::int32_t i = 0; i <= kPatchAround; ++i) {
       for (std::int32_t j = 0; j <= kPatchAcross; ++j) {

@@ -8,6 +8,7 @@
 #include <unsupported/Eigen/FFT>
 #include <utility>
 
+#include "log/progress.h"
 #include "math/elementary.h"
 #include "twin/twin_constants.h"
 
@@ -192,8 +193,9 @@ constexpr int kTogetherMax = 4;
 /// with the best single one, until the twin is near. Sets `file` to the arm with all of them.
 /// Returns each constant with its final value.
 std::vector<TwinRemedy> combine_remedies(Replay& replay, double step_error, const TwinRemedy& first,
-                                         scene::ArmFile& file) {
+                                         scene::ArmFile& file, scene::Progress& progress) {
   const std::vector<TwinConstant> constants = twin_constants(file);
+  std::size_t tried = constants.size();  // one by one, before
   std::vector<TwinRemedy> together{first};
   const auto set = [&](const TwinRemedy& remedy) {
     for (const TwinConstant& constant : constants) {
@@ -211,6 +213,7 @@ std::vector<TwinRemedy> combine_remedies(Replay& replay, double step_error, cons
     for (const TwinConstant& constant : constants) {
       // With wrong values of other constants, the arm may be impossible to simulate.
       auto remedy = Remedy(replay, file, constant, *now).find();
+      progress.set_share(++tried, constants.size() * kTogetherMax);
       if (remedy && remedy->error_rms < best.error_rms) best = std::move(remedy).value();
     }
     if (best.key.empty() || !(best.error_rms < (1 - kFurther) * before)) break;
@@ -241,10 +244,13 @@ driver::Result<TwinResult> compare_twin(const session::Recording& recording,
   found.step_error = motion->step_error;
   found.seconds = static_cast<double>(replay->windows().size()) * options.window;
   found.messages = motion->messages;
-  for (const TwinConstant& constant : twin_constants(file)) {
+  scene::Progress progress("twin");
+  const std::vector<TwinConstant> constants = twin_constants(file);
+  for (const TwinConstant& constant : constants) {
     auto remedy = Remedy(*replay, file, constant, *replayed).find();
     if (!remedy) return remedy.error();
     found.remedies.push_back(std::move(remedy).value());
+    progress.set_share(found.remedies.size(), constants.size() * kTogetherMax);
   }
   found.error_rms = replayed->rms();
   for (TwinRemedy& remedy : found.remedies) {
@@ -265,11 +271,13 @@ driver::Result<TwinResult> compare_twin(const session::Recording& recording,
   TwinForces forces = twin_forces(*motion, file);
   if (found.has_remedy()) {
     scene::ArmFile corrected = file;
-    auto together = combine_remedies(*replay, found.step_error, found.remedies.front(), corrected);
+    auto together =
+        combine_remedies(*replay, found.step_error, found.remedies.front(), corrected, progress);
     if (together.size() > 1) found.together = std::move(together);
     forces.constants_explain =
         forces.other_acted() && !twin_forces(*motion, corrected).other_acted();
   }
+  progress.set_share(1.0);
   return TwinResult{
       .comparison = std::move(found), .forces = std::move(forces), .trace = std::move(trace)};
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include "math/elementary.h"
@@ -16,6 +17,16 @@ namespace {
 constexpr std::int64_t kSubStep_ns = 100'000;
 constexpr double kLagsKept = 20;  // after which a current has decayed to 2e-9
 
+/// Returns the model of an arm with this geometry.
+template <class Geometry>
+driver::JointModel<Geometry> model_of(const driver::ArmModel& model) {
+  if constexpr (std::is_same_v<Geometry, device_sim::BoardGeometry>) {
+    return device_sim::board_model(model);
+  } else {
+    return driver::model_as<Geometry>(model);
+  }
+}
+
 /// An arm with a drive train: the encoders are on the motors, and the tip is behind elastic cables
 /// or joints with friction.
 template <class Geometry, class Tip>
@@ -26,7 +37,8 @@ class DriveTrainTwin final : public TwinMover {
   DriveTrainTwin(const TwinMotion& motion, const scene::ArmFile& file, Plant plant)
       : motion_(motion),
         delay_(file, motion.dt),
-        geometry_(std::get<Geometry>(file.model.geometry)),
+        geometry_(model_of<Geometry>(file.model).geometry),
+        free_B_(driver::free_axes(file.motors())),
         train_(file.simulated.drive_train),
         wiring_(file.simulated.firmware.wiring),
         current_max_(file.simulated.motors.current_max),
@@ -37,7 +49,10 @@ class DriveTrainTwin final : public TwinMover {
   void move(std::size_t stretch, std::size_t begin, const TwinStart& start,
             std::span<Eigen::Vector3d> seen) override {
     const std::vector<TwinSample>& samples = motion_.stretches[stretch];
-    plant_.put(state_at(samples, begin, start));
+    // The tip of an arm with one or two motors stays on its line or plane.
+    plant_.put(state_at(samples, begin,
+                        {start.p_BT.cwiseProduct(free_B_), start.v_BT.cwiseProduct(free_B_),
+                         start.stretch, start.stretch_rate}));
     for (std::size_t j = 0; j < seen.size(); ++j) {
       if (j > 0) pass(samples, begin + j - 1);
       Eigen::Matrix3d J;
@@ -103,6 +118,7 @@ class DriveTrainTwin final : public TwinMover {
   const TwinMotion& motion_;
   TwinDelay delay_;
   Geometry geometry_;
+  Eigen::Vector3d free_B_;  // 1 for each axis along which the tip can move, else 0
   device_sim::DriveTrainSettings train_;
   device_sim::WiringSettings wiring_;
   double current_max_;  // A
@@ -116,8 +132,8 @@ driver::Result<std::unique_ptr<TwinMover>> make_with(const TwinMotion& motion,
   settings.hand = {};              // no hand
   settings.drive_train.heat = {};  // a window is too short for heat, and each runs many times
   const Eigen::Vector3d& p_BT = motion.stretches.front().front().p_BT;
-  auto plant = device_sim::DriveTrainPlant<Geometry, Tip>::make(
-      driver::model_as<Geometry>(file.model), settings, p_BT, p_BT, kSubStep_ns);
+  auto plant = device_sim::DriveTrainPlant<Geometry, Tip>::make(model_of<Geometry>(file.model),
+                                                                settings, p_BT, p_BT, kSubStep_ns);
   if (!plant) return plant.error();
   return std::unique_ptr<TwinMover>(
       std::make_unique<DriveTrainTwin<Geometry, Tip>>(motion, file, std::move(plant).value()));
@@ -135,8 +151,9 @@ driver::Result<std::unique_ptr<TwinMover>> make_of(const TwinMotion& motion,
 
 driver::Result<std::unique_ptr<TwinMover>> make_drive_train_twin(const TwinMotion& motion,
                                                                  const scene::ArmFile& file) {
-  return file.is<driver::LinkageArm>() ? make_of<driver::LinkageArm>(motion, file)
-                                       : make_of<driver::SerialArm>(motion, file);
+  if (file.is<driver::SerialArm>()) return make_of<driver::SerialArm>(motion, file);
+  if (file.is<driver::LinkageArm>()) return make_of<driver::LinkageArm>(motion, file);
+  return make_of<device_sim::BoardGeometry>(motion, file);
 }
 
 }  // namespace thimble::twin

@@ -10,10 +10,13 @@ namespace thimble::twin {
 namespace {
 
 constexpr double kPart = 0.02;  // of a constant: the step of a difference
+// Sine of the slope above which weight moves the tip [chosen: far above rounding errors].
+constexpr double kTilted = 1e-6;
 
-/// Downward direction of the world in the base.
+/// Downward direction of the world in the base, as far as the tip can move along it.
 Eigen::Vector3d down_B(const scene::ArmFile& file) {
-  return file.R_WB.transpose() * Eigen::Vector3d(0, 0, -1);
+  const Eigen::Vector3d down = file.R_WB.transpose() * Eigen::Vector3d(0, 0, -1);
+  return down.cwiseProduct(driver::free_axes(file.motors()));
 }
 
 /// One number of each joint of the drive train.
@@ -49,7 +52,7 @@ void add_drive_train(const scene::ArmFile& file, std::vector<TwinConstant>& all)
   };
   const bool soft = train.compliant();
   for (const JointConstant& one : soft ? std::span<const JointConstant>(kOfCables) : kOfJoints) {
-    for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index i = 0; i < file.motors(); ++i) {
       const double value = (train.*one.member)[i];
       if (!(value > 0)) continue;
       all.push_back(
@@ -89,14 +92,21 @@ std::vector<TwinConstant> twin_constants(const scene::ArmFile& file) {
                  .min_value = 0,
                  .get = [](const scene::ArmFile& arm) { return arm.simulated.plant.coulomb; },
                  .set = [](scene::ArmFile& arm, double to) { arm.simulated.plant.coulomb = to; }});
-  all.push_back(
-      {.key = "simulation.tip.weight",
-       .unit = "N",
-       .step = 1e-3,
-       .min_value = 0,
-       .get = [](const scene::ArmFile& arm) { return arm.simulated.weight_B.dot(down_B(arm)); },
-       .set = [](scene::ArmFile& arm, double to) { arm.simulated.weight_B = to * down_B(arm); }});
-  for (std::size_t i = 0; i < 3; ++i) {
+  // A plane or a line that is level carries the weight.
+  if (down_B(file).norm() > kTilted) {
+    all.push_back(
+        {.key = "simulation.tip.weight",
+         .unit = "N",
+         .step = 1e-3,
+         .min_value = 0,
+         .get =
+             [](const scene::ArmFile& arm) {
+               const Eigen::Vector3d down = down_B(arm);
+               return arm.simulated.weight_B.dot(down) / down.squaredNorm();
+             },
+         .set = [](scene::ArmFile& arm, double to) { arm.simulated.weight_B = to * down_B(arm); }});
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(file.motors()); ++i) {
     const double torque_constant = file.model.drives[i].torque_constant;
     all.push_back(
         {.key = fmt::format("joints.torque_constant[{}]", i + 1),

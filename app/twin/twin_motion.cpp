@@ -32,11 +32,11 @@ driver::Result<scene::ArmFile> arm_of(const session::RecordingInfo& info) {
 }
 
 driver::Result<void> check_file(const scene::ArmFile& file) {
-  if (!file.can_simulate || !(file.is<driver::SerialArm>() || file.is<driver::LinkageArm>())) {
-    return driver::Error{
-        fmt::format("The arm {} has no twin. A twin needs a file of a serial arm or a Polhem with "
-                    "a section `simulation`.",
-                    file.name)};
+  if (!file.can_simulate || file.is<driver::DeltaArm>()) {
+    return driver::Error{fmt::format(
+        "The arm {} has no twin. A twin needs a file of an arm with joint motors, other "
+        "than a Falcon, with a section `simulation`.",
+        file.name)};
   }
   const auto& wire = file.simulated.wire;
   if (1e-9 * static_cast<double>(wire.delay_in_ns + wire.delay_out_ns) >
@@ -132,7 +132,7 @@ class Reader {
     force_square_ += f_T_B.squaredNorm();
     for (int i = 0; i < 3; ++i) {
       const double step = file_.model.step(static_cast<std::size_t>(i));
-      step_square_ += (J.col(i) * step).squaredNorm() / (3 * 12.0);
+      step_square_ += (J.col(i) * step).squaredNorm() / (file_.motors() * 12.0);
     }
     ++taken_;
     stretch_.push_back(sample);

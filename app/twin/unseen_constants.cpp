@@ -32,7 +32,7 @@ std::vector<std::string> unseen_differences(const scene::ArmFile& recorded,
   constexpr const char* kHome =
       "approach the home pose from two sides (thimble hil --attended --check home_pose)";
   constexpr const char* kPush = "run `thimble feel-check`";
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(file.motors()); ++i) {
     const auto key = [i](const char* name) { return fmt::format("joints.{}[{}]", name, i + 1); };
     const auto& was = recorded.model.encoders[i];
     const auto& is = file.model.encoders[i];

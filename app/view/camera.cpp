@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "view/touch_marks.h"
 
@@ -29,6 +30,29 @@ void add_touch(const DrawnScene& scene, const driver::TickRecord& tick,
     const Eigen::Vector3d from = tick.in_contact && p_WP.allFinite() ? p_WP : p_WT;
     points.emplace_back(from + arrow_length(f_W.norm(), scene) * f_W.normalized());
   }
+}
+
+/// Returns the yaw from which the two tips of a scene with several arms that are farthest apart are
+/// next to each other; none if one is above the other, or if there is one arm.
+std::optional<double> yaw_across_tips(const DrawnMoment& moment) {
+  constexpr double kMin = 0.02;   // m: closer tips are seen from any side. [chosen]
+  constexpr double kLean = 0.35;  // rad towards the default direction: depth is seen. [chosen]
+  std::vector<Eigen::Vector2d> tips{{moment.tick.p_WT[0], moment.tick.p_WT[1]}};
+  for (const DrawnArm& other : moment.others) {
+    tips.emplace_back(other.tick.p_WT[0], other.tick.p_WT[1]);
+  }
+  Eigen::Vector2d line(0, 0);
+  for (const Eigen::Vector2d& a : tips) {
+    for (const Eigen::Vector2d& b : tips) {
+      if ((b - a).norm() > line.norm()) line = b - a;  // never for NaN
+    }
+  }
+  if (!(line.norm() > kMin)) return {};
+  double across = std::atan2(line.x(), -line.y());
+  // Of the two sides, the one nearer to the default direction.
+  if (std::cos(across - kYaw) < 0) across += std::numbers::pi;
+  const double lean = std::remainder(kYaw - across, 2 * std::numbers::pi);
+  return across + std::clamp(lean, -kLean, kLean);
 }
 
 }  // namespace
@@ -133,7 +157,9 @@ Camera frame(const DrawnScene& scene, const DrawnMoment& moment, double aspect) 
   camera.pitch = kPitch;
   // Turns the camera part of the way towards a touch that would be hidden.
   const Eigen::Map<const Eigen::Vector3d> n_W(moment.tick.n_W.data());
-  if (moment.tick.in_contact && n_W.head<2>().norm() > 0.35) {
+  if (const auto across = yaw_across_tips(moment)) {
+    camera.yaw = *across;
+  } else if (moment.tick.in_contact && n_W.head<2>().norm() > 0.35) {
     const double away = std::remainder(std::atan2(n_W.y(), n_W.x()) - kYaw, 2 * std::numbers::pi);
     camera.yaw = kYaw + std::clamp(away, -1.9, 1.9) * 0.6;
   }

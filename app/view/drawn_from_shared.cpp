@@ -26,6 +26,21 @@ bool is_flat(const render::TriangleMesh& mesh) {
   });
 }
 
+/// Returns ranges of the scene's vertices and triangles as a mesh.
+render::TriangleMesh mesh_of(const session::SharedScene& scene, std::size_t first_vertex,
+                             std::size_t vertex_count, std::size_t first_triangle,
+                             std::size_t triangle_count) {
+  render::TriangleMesh mesh;
+  const auto vertices = std::span(scene.vertices).subspan(first_vertex, vertex_count);
+  mesh.vertices.assign(vertices.begin(), vertices.end());
+  for (const auto& [a, b, c] : std::span(scene.triangles).subspan(first_triangle, triangle_count)) {
+    mesh.triangles.push_back({static_cast<std::int32_t>(a - first_vertex),
+                              static_cast<std::int32_t>(b - first_vertex),
+                              static_cast<std::int32_t>(c - first_vertex)});
+  }
+  return mesh;
+}
+
 DrawnObject drawn_object(const session::SharedScene& scene,
                          const session::SharedScene::Object& object) {
   DrawnObject drawn;
@@ -35,14 +50,8 @@ DrawnObject drawn_object(const session::SharedScene& scene,
   drawn.crease_angle = object.crease_angle;
   drawn.texture = object.texture;
   drawn.friction = object.friction;
-  const auto vertices = std::span(scene.vertices).subspan(object.first_vertex, object.vertex_count);
-  drawn.mesh.vertices.assign(vertices.begin(), vertices.end());
-  for (const auto& [a, b, c] :
-       std::span(scene.triangles).subspan(object.first_triangle, object.triangle_count)) {
-    drawn.mesh.triangles.push_back({static_cast<std::int32_t>(a - object.first_vertex),
-                                    static_cast<std::int32_t>(b - object.first_vertex),
-                                    static_cast<std::int32_t>(c - object.first_vertex)});
-  }
+  drawn.mesh = mesh_of(scene, object.first_vertex, object.vertex_count, object.first_triangle,
+                       object.triangle_count);
   if (const session::SharedScene::Map& map = object.map; map.parts > 0) {
     const auto values =
         std::span(scene.map_values)
@@ -55,6 +64,10 @@ DrawnObject drawn_object(const session::SharedScene& scene,
                  .values = {values.begin(), values.end()}};
   }
   drawn.endless = drawn.is_placeholder && is_flat(drawn.mesh);
+  if (!drawn.endless) {
+    drawn.collider = mesh_of(scene, object.collider_first_vertex, object.collider_vertex_count,
+                             object.collider_first_triangle, object.collider_triangle_count);
+  }
   return drawn;
 }
 
@@ -67,6 +80,7 @@ DrawnScene drawn_scene_of(const session::SharedScene& scene) {
   drawn.arm_in_scene = scene.arms.front().in_scene;
   drawn.force_limit = scene.force_max > 0 ? scene.force_max : 5;
   drawn.tip_radius = scene.tip_radius;
+  drawn.duration = scene.duration;
   drawn.rate = 1e9 / static_cast<double>(scene.period_ns);
   for (const session::SharedScene::Object& object : scene.objects) {
     drawn.objects.push_back(drawn_object(scene, object));

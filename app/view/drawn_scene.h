@@ -34,6 +34,9 @@ struct DrawnObject {
   bool endless = false;         ///< A plane: drawn, but not framed by the camera.
   bool field = false;           ///< Acts everywhere and has no triangles.
   DrawnMap map{};               ///< Of an object that does not deform.
+  /// Shape with which it collides, in W before the first tick, m. Without triangles: it meets
+  /// nothing, or is a plane.
+  render::TriangleMesh collider{};
 };
 
 /// The force of a scene's fields on a tip at rest.
@@ -59,6 +62,7 @@ struct DrawnScene {
   double force_limit = 5;          ///< N
   double tip_radius = 0;           ///< Radius of a tip that is a ball, m; 0: a point.
   double rate = 1000;              ///< Ticks per second, Hz.
+  double duration = 0;             ///< Planned duration of the run, s; 0: unknown.
 };
 
 /// One part of the arm: a rod between two points of the world, m.

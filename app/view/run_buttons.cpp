@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -36,6 +37,23 @@ std::string why_no_step_now(const session::SharedReader& reader) {
 
 }  // namespace
 
+std::string why_no_restart_now(const session::SharedReader& reader) {
+  std::string why = reader.why_no_restart();
+  if (why.empty() || reader.state() != session::RunState::kEnded) return why;
+  const auto& arms = reader.scene().arms;
+  const bool real = std::any_of(arms.begin(), arms.end(), [](const session::SharedScene::Arm& arm) {
+    return arm.device != "sim";
+  });
+  if (!real) return why;
+  return "A real arm is started in a terminal, where its questions are answered: thimble run SCENE "
+         "--device auto";
+}
+
+bool RunButtons::offers_run_again(const session::SharedReader& reader) const {
+  return can_run_again_ && reader.state() == session::RunState::kEnded &&
+         reader.why_no_restart().empty();
+}
+
 std::string counted(const session::SharedReader::Counters& counters) {
   std::string line = scene::counted(counters.ticks, "tick") + ", " +
                      scene::counted(counters.missed, "period") + " missed";
@@ -61,6 +79,20 @@ std::string RunButtons::take_message() {
   return std::exchange(message_, {});
 }
 
+bool RunButtons::take_run_again() {
+  return std::exchange(run_again_, false);
+}
+
+void RunButtons::restart(session::SharedReader& reader) {
+  if (offers_run_again(reader)) {
+    run_again_ = true;
+  } else if (std::string why = why_no_restart_now(reader); !why.empty()) {
+    message_ = std::move(why);
+  } else {
+    keep_error(reader.ask_restart());
+  }
+}
+
 void RunButtons::step(session::SharedReader& reader, bool shift, bool ctrl) {
   keep_error(reader.ask_steps(ctrl ? 100 : shift ? 10 : 1));
 }
@@ -74,8 +106,9 @@ void RunButtons::draw(session::SharedReader& reader) {
   const std::string no_restart = reader.why_no_restart();
   const ImGuiIO& io = ImGui::GetIO();
   Flow flow;
-  if (button(flow, "Restart", "Restarts the run from its first tick (B)", no_restart)) {
-    keep_error(reader.ask_restart());
+  if (button(flow, "Restart", "Restarts the run from its first tick (B)",
+             why_no_restart_now(reader))) {
+    restart(reader);
   }
   if (button(flow, "Step",
              "Advances a paused run by one tick; with shift by 10, with ctrl by 100 (N)",
@@ -89,23 +122,6 @@ void RunButtons::draw(session::SharedReader& reader) {
   if (ImGui::Checkbox("loop", &loop)) keep_error(reader.ask_loop(loop));
   ImGui::EndDisabled();
   explain("Restarts the run when it ends (L)", no_restart);
-  const std::string no_speed = reader.why_no_speed();
-  ImGui::BeginDisabled(!no_speed.empty());
-  double speed = reader.speed_asked();
-  // Next to the slider, because its grip would cover the text.
-  const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
-  flow.next(ImGui::CalcTextSize("speed 0.00").x + gap + 2 * ImGui::GetFrameHeight());
-  ImGui::AlignTextToFramePadding();
-  ImGui::Text("speed %.2f", speed);
-  ImGui::SameLine(0, gap);
-  ImGui::SetNextItemWidth(-1);
-  if (ImGui::SliderScalar("##speed", ImGuiDataType_Double, &speed, &session::kSpeedMin,
-                          &session::kSpeedMax, "",
-                          ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic)) {
-    keep_error(reader.ask_speed(speed));
-  }
-  ImGui::EndDisabled();
-  explain("Multiple of real time; the ticks stay bit-identical (, and .)", no_speed);
   if (button(flow, "Scene...", "Runs another scene instead of this one (O)", no_restart)) {
     scenes_.toggle();
   }
@@ -120,7 +136,7 @@ void RunButtons::draw(session::SharedReader& reader) {
 void RunButtons::take_key(int key, bool shift, bool ctrl, session::SharedReader& reader) {
   switch (key) {
     case GLFW_KEY_B:
-      keep_error(reader.ask_restart());
+      restart(reader);
       break;
     case GLFW_KEY_N:
       step(reader, shift, ctrl);

@@ -398,6 +398,10 @@ std::vector<Label> ScenePainter::paint(const DrawnMoment& moment, const Camera& 
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   paint_ground(choice, canvas);
   paint_edges(choice);
+  if (choice.colliders) {
+    if (colliders_ == nullptr) colliders_ = std::make_unique<ColliderModels>(scene_);
+    colliders_->draw(places_, choice.theme, programs_.plain);
+  }
   panes_.draw(marks.panes, camera, programs_.plain);
   paint_translucent(marks.solids);
   paint_pixels(choice, canvas);

@@ -15,6 +15,7 @@
 #include "view/gl/solids.h"
 #include "view/gl/surface_model.h"
 #include "view/maps/mapped_surfaces.h"
+#include "view/overlays/collider_models.h"
 #include "view/overlays/pane_model.h"
 #include "view/touch_marks.h"
 
@@ -42,9 +43,10 @@ struct PaintChoice {
   /// Smooth edges, and soft shadow edges of 16 samples instead of 4.
   bool fine = true;
   bool grid = true;
-  bool fields = false;    ///< Forces of the scene's fields, as arrows.
-  bool trail = false;     ///< The tip's path of the last seconds, coloured by force.
-  bool surfaces = false;  ///< Marks on textures and friction.
+  bool fields = false;     ///< Forces of the scene's fields, as arrows.
+  bool trail = false;      ///< The tip's path of the last seconds, coloured by force.
+  bool surfaces = false;   ///< Marks on textures and friction.
+  bool colliders = false;  ///< Shapes with which objects collide.
   Theme theme = Theme::kLight;
   MarkChoice marks;
 };
@@ -95,6 +97,7 @@ class ScenePainter {
   GlBuffer view_block_;
   GlVertexArray nothing_;
   PaneModel panes_;
+  std::unique_ptr<ColliderModels> colliders_;  // null until they are shown
   ColouredModel field_, trail_;
   double field_strongest_ = -1;  // N, end of the scale of the current field's colours
   ShadowMap shadow_map_;

@@ -47,6 +47,10 @@ driver::Result<std::unique_ptr<Screen>> Screen::open() {
     auto* self = static_cast<Screen*>(glfwGetWindowUserPointer(window));
     if (action == GLFW_PRESS) self->keys_.push_back(key);
   });
+  glfwSetDropCallback(screen->window_, [](GLFWwindow* window, int count, const char** paths) {
+    auto* self = static_cast<Screen*>(glfwGetWindowUserPointer(window));
+    self->drops_.insert(self->drops_.end(), paths, paths + count);
+  });
   ImGui::CreateContext();
   screen->imgui_ = true;
   ImGui_ImplGlfw_InitForOpenGL(screen->window_, true);
@@ -68,6 +72,10 @@ std::vector<int> Screen::take_keys() {
   std::vector<int> keys = std::exchange(keys_, {});
   if (ImGui::GetIO().WantTextInput) keys.clear();
   return keys;
+}
+
+std::vector<std::string> Screen::take_drops() {
+  return std::exchange(drops_, {});
 }
 
 void Screen::begin(Theme theme) {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "thimble/driver/result.h"
 #include "view/gl/canvas.h"
+#include "view/gl/palette.h"
 
 struct GLFWwindow;
 
@@ -24,6 +26,8 @@ class Screen {
   float scale() const { return scale_; }
   /// Returns the keys pressed since the last call, except those typed into a field.
   std::vector<int> take_keys();
+  /// Returns the files that were dropped on the window since the last call.
+  std::vector<std::string> take_drops();
 
   /// Sets the scale of text and panel; 0: that of the monitor.
   void set_scale(double wanted) { wanted_scale_ = static_cast<float>(wanted); }
@@ -44,6 +48,7 @@ class Screen {
   float wanted_scale_ = 0;  // 0: the monitor's
   Theme theme_ = Theme::kLight;
   std::vector<int> keys_;
+  std::vector<std::string> drops_;
 };
 
 }  // namespace thimble::view

@@ -143,8 +143,9 @@ Picture ShotPainter::paint(const DrawnMoment& moment, const Plots& plots) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const ScreenPart left{pad, scene.height + pad / 2, half, strip - pad};
     const ScreenPart right{2 * pad + half, left.y, half, left.height};
-    plots.draw(list, left, Channel::kForce, plots.newest(), {});
-    plots.draw(list, right, Channel::kDepth, plots.newest(), {});
+    const TimeRange shown = plots.whole_run(painter_.scene().duration).value_or(plots.newest());
+    plots.draw(list, left, Channel::kForce, shown, {});
+    plots.draw(list, right, Channel::kDepth, shown, {});
   }
   text_->end();
   return canvas_.read();

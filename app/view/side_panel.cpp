@@ -11,6 +11,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "thimble/driver/heat_guard.h"
 #include "view/knob_panel.h"
@@ -21,31 +22,57 @@
 namespace thimble::view {
 namespace {
 
+/// When a key has an effect.
+enum class For { kAll, kRun, kRecording, kLedRun, kHeldRun, kFreeRun };
+
 /// One key and its effect.
 struct Key {
   const char* key;
   const char* does;
+  For when = For::kAll;
 };
 
 constexpr std::array kKeys = {Key{"left drag", "rotate the view"},
                               Key{"right drag", "pan (also shift + left drag)"},
                               Key{"wheel", "zoom"},
-                              Key{"ctrl + left drag", "move the simulated hand; wheel: push"},
-                              Key{"H", "swap the two left drags"},
+                              Key{"ctrl + left drag", "move the hand; wheel: push", For::kLedRun},
+                              Key{"H", "swap the two left drags", For::kLedRun},
                               Key{"F", "frame the scene"},
-                              Key{"space", "pause or continue; recording: play"},
-                              Key{"space held", "enables forces with --hold-to-run key"},
+                              Key{"T", "tip to the middle"},
+                              Key{"space", "pause or continue", For::kFreeRun},
+                              Key{"space held", "enables forces", For::kHeldRun},
+                              Key{"space", "play or stop", For::kRecording},
+                              Key{"1 to 4 held", "buttons of a simulated arm", For::kRun},
                               Key{"left, right", "one moment back or on (shift: 1 s)"},
                               Key{"Home, End", "oldest moment; now or the end"},
                               Key{", .", "slower, faster"},
-                              Key{"R", "record, stop recording"},
+                              Key{"R", "record, stop recording", For::kRun},
                               Key{"S", "screenshot"},
                               Key{"G", "Gouraud or Phong shading"},
                               Key{"E", "edges of polygons"},
                               Key{"P", "active triangle and edge planes"},
                               Key{"A", "arm"},
+                              Key{"C", "shapes that collide"},
                               Key{"F1", "this help"},
                               Key{"Q", "close"}};
+
+bool has_effect(For when, const ViewNotes& notes) {
+  switch (when) {
+    case For::kAll:
+      return true;
+    case For::kRun:
+      return !notes.recording;
+    case For::kRecording:
+      return notes.recording;
+    case For::kLedRun:
+      return notes.leads;
+    case For::kHeldRun:
+      return notes.holds_key;
+    case For::kFreeRun:
+      return !notes.recording && !notes.holds_key;
+  }
+  return true;
+}
 
 void toggle_record(session::SharedReader& reader) {
   if (reader.counters().recording) {
@@ -72,6 +99,13 @@ void draw_tick(const driver::TickRecord& tick, const std::string& words) {
                        "motors %.0f %% of their heat limit, force reduced", 100 * heat);
   } else if (heat > 0) {
     ImGui::TextDisabled("motors %.0f %% of their heat limit", 100 * heat);
+  }
+  if (tick.buttons != 0) {
+    std::string held = "buttons";
+    for (int button = 0; button < 16; ++button) {
+      if ((tick.buttons >> button & 1) != 0) held += fmt::format(" {}", button + 1);
+    }
+    ImGui::TextUnformatted(held.c_str());
   }
   if (tick.fault != driver::Fault::kNone) {
     ImGui::TextColored(shown_colour(kForceColour), "%s",
@@ -104,8 +138,9 @@ void draw_recorded_head(TouchSource& source) {
   draw_tick(source.moment().tick, "recorded");
 }
 
-void draw_buttons(session::SharedReader& reader, ViewChoice& choice) {
-  const bool paused = reader.pause_asked();
+constexpr const char* kBackHelp = "Shows the list of scenes. A run that this window started ends";
+
+void draw_buttons(session::SharedReader& reader, const ViewNotes& notes, ViewChoice& choice) {
   Flow flow;
   const auto button = [&](const char* label, const char* what) {
     flow.next(ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x);
@@ -113,13 +148,7 @@ void draw_buttons(session::SharedReader& reader, ViewChoice& choice) {
     explain(what);
     return pressed;
   };
-  if (button(paused ? "Continue" : "Pause",
-             reader.scene().wall_clock
-                 ? "Fades the force out; the arm's time continues, and its ticks count as paused "
-                   "(space)"
-                 : "Pauses or continues the simulated time (space)")) {
-    reader.ask_pause(!paused);
-  }
+  if (notes.start_window && button("Start window", kBackHelp)) choice.back = true;
   if (button(reader.counters().recording ? "Stop recording" : "Record",
              "Records every tick from now on, in the folder where the run was started (R)")) {
     toggle_record(reader);
@@ -139,7 +168,8 @@ void draw_plots(TouchSource& source, PlotPanel& panel, float height) {
   const PlayHead& head = source.head();
   const PlotTime time{.looked = head.live() ? std::nullopt : std::optional(head.time()),
                       .recorded = !head.of_a_run(),
-                      .period_ns = std::llround(1e9 / source.scene().rate)};
+                      .period_ns = std::llround(1e9 / source.scene().rate),
+                      .duration = source.scene().duration};
   if (const auto asked = panel.draw(source.plots(), time, height)) source.head().go(*asked);
 }
 
@@ -158,6 +188,10 @@ void draw_looks(const DrawnScene& scene, bool of_a_run, ViewChoice& choice) {
   box("trail", paint.trail);
   box("normal, friction", paint.marks.contact);
   box("textures", paint.surfaces);
+  const bool meets =
+      std::any_of(scene.objects.begin(), scene.objects.end(),
+                  [](const DrawnObject& object) { return !object.collider.triangles.empty(); });
+  if (meets) box("collision", paint.colliders);
   box("arm", paint.marks.arm);
   box("shadows", paint.shadows);
   box("grid", paint.grid);
@@ -280,11 +314,16 @@ void draw_side_panel(const ScreenPart& part, TouchSource& source, const ViewNote
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
   if (reader != nullptr) {
     draw_head(*reader, source);
-    draw_buttons(*reader, choice);
+    draw_buttons(*reader, notes, choice);
     draw_parts(source, choice);
     draw_status(*reader, notes);
   } else if (source.has_scene()) {
     draw_recorded_head(source);
+    if (notes.start_window) {
+      if (ImGui::Button("Start window")) choice.back = true;
+      explain(kBackHelp);
+      ImGui::SameLine();
+    }
     if (ImGui::Button("Picture")) choice.screenshot = true;
     ImGui::SameLine();
     if (ImGui::Button("?")) choice.help = !choice.help;
@@ -295,44 +334,89 @@ void draw_side_panel(const ScreenPart& part, TouchSource& source, const ViewNote
   ImGui::End();
 }
 
+std::vector<RunKey> listed_keys(const ViewNotes& notes) {
+  std::vector<RunKey> keys;
+  for (const Key& key : kKeys) {
+    if (has_effect(key.when, notes)) keys.push_back({key.key, key.does});
+  }
+  if (!notes.recording) keys.insert(keys.end(), kRunKeys.begin(), kRunKeys.end());
+  return keys;
+}
+
+namespace {
+
+void begin_box(const char* name, float x, float y, float pivot_y) {
+  ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, {0.5F, pivot_y});
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                   ImGuiWindowFlags_NoInputs);
+}
+
+// In the middle of the scene, as far as the legend leaves room; below it if there is too little.
+void draw_notice(const ScreenPart& part, const ViewNotes& notes) {
+  const float margin = ImGui::GetFontSize();
+  constexpr float kNarrowest = 16;  // width of the text, in heights of the font; chosen
+  const float padding = 2 * ImGui::GetStyle().WindowPadding.x;
+  const float legend = notes.legend.width > 0 ? notes.legend.width + margin : 0;
+  const bool beside = part.width - legend - 2 * margin - padding > kNarrowest * margin;
+  const float left = part.x + margin + (beside ? legend : 0);
+  const float room = part.x + part.width - margin - left;
+  const float wrap = room - padding;
+  const float width = ImGui::CalcTextSize(notes.notice.c_str(), nullptr, false, wrap).x + padding;
+  const float middle =
+      std::max(part.x + part.width / 2, std::min(left + width / 2, left + room / 2));
+  begin_box("notice", middle, part.y + (beside ? 0 : notes.legend.height) + margin, 0);
+  ImGui::PushTextWrapPos(wrap + padding / 2);
+  ImGui::TextColored(shown_colour(kForceColour), "%s", notes.notice.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::End();
+}
+
+// Over the scene; in two columns over the window if it is too low for one.
+void draw_help(const ScreenPart& part, const ViewNotes& notes) {
+  const std::vector<RunKey> keys = listed_keys(notes);
+  const float letter = ImGui::GetFontSize();
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0.5F * letter, 0.2F * letter});
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const bool low = static_cast<float>(keys.size() + 3) * line > part.height;
+  const std::size_t in_column = low ? (keys.size() + 1) / 2 : keys.size();
+  const float window = ImGui::GetIO().DisplaySize.x;
+  begin_box("help", low ? window / 2 : part.x + part.width / 2, part.y + part.height / 2, 0.5F);
+  for (std::size_t first = 0; first < keys.size(); first += in_column) {
+    if (first > 0) ImGui::SameLine(0, 2 * letter);
+    ImGui::BeginGroup();
+    const float left = ImGui::GetCursorPosX();
+    for (std::size_t i = first; i < std::min(keys.size(), first + in_column); ++i) {
+      ImGui::TextColored(shown_colour(kDepthColour), "%s", keys[i].key);
+      ImGui::SameLine();
+      ImGui::SetCursorPosX(left + 9 * letter);
+      ImGui::TextUnformatted(keys[i].does);
+    }
+    ImGui::EndGroup();
+  }
+  if (!notes.recording) {
+    ImGui::TextUnformatted(
+        notes.closing_ends && notes.own_run ? "Closing ends the run: this window started it."
+        : notes.closing_ends                ? "Closing ends the run: this window moves its hand."
+                                            : "The run continues when the window closes.");
+  }
+  ImGui::End();
+  ImGui::PopStyleVar();
+}
+
+}  // namespace
+
 void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoice& choice) {
-  const auto box = [](const char* name, float x, float y, float pivot_y) {
-    ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, {0.5F, pivot_y});
-    ImGui::Begin(name, nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
-                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
-                     ImGuiWindowFlags_NoInputs);
-  };
   const float middle = part.x + part.width / 2;
   const float margin = ImGui::GetFontSize();
-  if (!notes.notice.empty()) {
-    box("notice", middle, part.y + margin, 0);
-    ImGui::PushTextWrapPos(0.9F * part.width);
-    ImGui::TextColored(shown_colour(kForceColour), "%s", notes.notice.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::End();
-  }
+  if (!notes.notice.empty()) draw_notice(part, notes);
   if (!notes.message.empty()) {
-    box("message", middle, part.y + part.height - margin, 1);
+    begin_box("message", middle, part.y + part.height - margin, 1);
     ImGui::TextUnformatted(notes.message.c_str());
     ImGui::End();
   }
-  if (choice.help) {
-    box("help", middle, part.y + part.height / 2, 0.5F);
-    for (const Key& key : kKeys) {
-      ImGui::TextColored(shown_colour(kDepthColour), "%s", key.key);
-      ImGui::SameLine(10 * ImGui::GetFontSize());
-      ImGui::TextUnformatted(key.does);
-    }
-    for (const RunKey& key : kRunKeys) {
-      ImGui::TextColored(shown_colour(kDepthColour), "%s", key.key);
-      ImGui::SameLine(10 * ImGui::GetFontSize());
-      ImGui::TextUnformatted(key.does);
-    }
-    ImGui::TextUnformatted(notes.closing_ends ? "Closing ends the run: this window moves its hand."
-                                              : "The run continues when the window closes.");
-    ImGui::End();
-  }
+  if (choice.help) draw_help(part, notes);
 }
 
 void take_key(int key, session::SharedReader* reader, ViewChoice& choice) {
@@ -343,6 +427,9 @@ void take_key(int key, session::SharedReader* reader, ViewChoice& choice) {
       break;
     case GLFW_KEY_F:
       choice.frame = true;
+      break;
+    case GLFW_KEY_T:
+      choice.to_tip = true;
       break;
     case GLFW_KEY_S:
       choice.screenshot = true;
@@ -358,6 +445,9 @@ void take_key(int key, session::SharedReader* reader, ViewChoice& choice) {
       break;
     case GLFW_KEY_A:
       paint.marks.arm = !paint.marks.arm;
+      break;
+    case GLFW_KEY_C:
+      paint.colliders = !paint.colliders;
       break;
     case GLFW_KEY_F1:
     case GLFW_KEY_SLASH:

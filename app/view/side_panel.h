@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "share/shared_reader.h"
 #include "view/playback/plot_panel.h"
@@ -19,8 +20,10 @@ struct ViewChoice {
   RunButtons run;  ///< Control of the run.
   // Requests; the code that executes them resets them.
   bool frame = true;
+  bool to_tip = false;  ///< Moves the tip to the centre of the picture.
   bool screenshot = false;
   bool close = false;
+  bool back = false;  ///< Opens the start window.
 };
 
 /// The notes of the panel about the window itself.
@@ -29,6 +32,13 @@ struct ViewNotes {
   std::string message;        ///< Message about the last action; empty: none.
   double frame_time = 0;      ///< s, smoothed
   bool closing_ends = false;  ///< Whether the run ends with this window.
+  ScreenPart legend;          ///< Part of the scene that the legend covers.
+  // What is shown, for the list of keys.
+  bool recording = false;     ///< A recording; otherwise a run.
+  bool leads = false;         ///< The window moves the hand of the run.
+  bool own_run = false;       ///< Whether this window started the run.
+  bool start_window = false;  ///< The start window opened this, and can be shown again.
+  bool holds_key = false;     ///< The space bar enables the force (--hold-to-run key).
 };
 
 /// Returns the panel's width in a window, pixels: 380 at scale 1, at most half of the window.
@@ -41,7 +51,11 @@ float panel_width(float window_width, float scale);
 void draw_side_panel(const ScreenPart& part, TouchSource& source, const ViewNotes& notes,
                      ViewChoice& choice);
 
-/// Draws the notice, if any, and the help, if requested, over the scene's part.
+/// Returns the keys that have an effect, for the help.
+std::vector<RunKey> listed_keys(const ViewNotes& notes);
+
+/// Draws the notice, if any, beside the legend or below it, and the help, if requested, over the
+/// scene's part. The help has each key once, and only keys that have an effect.
 void draw_notices(const ScreenPart& part, const ViewNotes& notes, const ViewChoice& choice);
 
 /// Handles a key (a GLFW_KEY_...); the help lists them.

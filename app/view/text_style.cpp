@@ -13,6 +13,7 @@ namespace {
 constexpr const char* kFont =
     "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";  // fonts-dejavu-core
 constexpr float kFontSize = 16;                         // pixels at scale 1
+constexpr float kTitleScale = 1.5F;  // the second font, for titles of the start window
 
 ImU32 packed(const Colour& colour, float cover = 1) {
   return ImGui::ColorConvertFloat4ToU32({colour[0], colour[1], colour[2], cover});
@@ -47,6 +48,7 @@ void set_text_style(float scale, Theme theme) {
   io.Fonts->Clear();
   if (std::filesystem::exists(kFont)) {
     io.Fonts->AddFontFromFileTTF(kFont, size);
+    io.Fonts->AddFontFromFileTTF(kFont, std::round(kTitleScale * size));
   } else {
     ImFontConfig plain;
     plain.SizePixels = size;

@@ -25,6 +25,8 @@ struct OneArm {
   const std::vector<DrawnRod>& rods;
   bool bent;              ///< The touched object is dented, so that the tip is on its surface.
   double tip_radius = 0;  ///< Of a tip that is a ball, m; 0: a point.
+  /// Draws the force through objects: several arms hold objects from all sides.
+  bool force_shines = false;
 };
 
 void add_arm(const OneArm& moment, TouchMarks& marks) {
@@ -89,8 +91,11 @@ void add_force(const DrawnScene& scene, const OneArm& moment, double thick, Touc
   const double length = std::max(arrow_length(size, scene), 6 * thick);
   const Point neck = from + std::max(length - 5 * thick, 0.4 * length) * along;
   const Point tip = from + length * along;
-  marks.solids.push_back(rod(from, neck, thick, kForceColour));
-  marks.solids.push_back(cone(neck, tip, 2.4 * thick, kForceColour));
+  for (Solid part :
+       {rod(from, neck, thick, kForceColour), cone(neck, tip, 2.4 * thick, kForceColour)}) {
+    part.shines_through = moment.force_shines;
+    marks.solids.push_back(part);
+  }
   marks.labels.push_back({tip, along, fmt::format("{:.2f} N", size), kForceColour});
 }
 
@@ -220,9 +225,10 @@ TouchMarks mark_touch(const DrawnScene& scene, const DrawnMoment& moment, double
     }
   };
   const bool bent = moment.patch.triangle_count > 0 && moment.patch.object == moment.tick.object;
-  add({moment.tick, moment.arm, bent, scene.tip_radius}, scene.arm_in_scene);
+  const bool several = !moment.others.empty();
+  add({moment.tick, moment.arm, bent, scene.tip_radius, several}, scene.arm_in_scene);
   for (const DrawnArm& other : moment.others)
-    add({other.tick, other.rods, false, scene.tip_radius}, other.name);
+    add({other.tick, other.rods, false, scene.tip_radius, several}, other.name);
   if (choice.edge_planes) add_edge_planes(scene, moment, marks);
   return marks;
 }

@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "share/run_attachment.h"
 #include "thimble/driver/result.h"
 #include "view/feedback/touch_thread.h"
 #include "view/gl/palette.h"
@@ -21,11 +20,6 @@ struct WindowChoice {
   std::string last_picture;  ///< PNG of the window before it closes by itself; empty: none.
   double at = -1;  ///< Time of a recording at which it is stopped at first, s; below 0: it plays.
 };
-
-/// Opens a window on the followed runs and shows them until it is closed. If there is no run, or it
-/// has ended, the window says so and shows the next one. The runs are not affected.
-/// The error says why there is no window. Real-time: never from the servo thread.
-driver::Result<void> show_window(session::RunAttachment& runs, const WindowChoice& choice);
 
 /// Opens a window that plays a recording until it is closed; `file` is its name. The error says why
 /// there is no window. Real-time: never from the servo thread.

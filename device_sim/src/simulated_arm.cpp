@@ -28,9 +28,12 @@ driver::Result<AnyPlant> as_any(driver::Result<Made> made) {
 
 template <class MakePlant>
 driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::ArmModel& board,
-                                                   const SimulatedArmSettings& settings,
-                                                   HandPath path, std::uint64_t seed,
+                                                   SimulatedArmSettings settings, HandPath path,
+                                                   std::uint64_t seed,
                                                    const MakePlant& make_plant) {
+  const int motors = driver::motor_count(board.geometry);
+  const Eigen::Vector3d free_B = driver::free_axes(motors);
+  if (motors < 3) settings.weight_B = settings.weight_B.cwiseProduct(free_B);
   if (settings.wire.delay_in_ns < 0 || settings.wire.delay_out_ns < 0) {
     return driver::Error{"The simulated wire's delays must not be negative (ns)."};
   }
@@ -46,7 +49,8 @@ driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::ArmModel& board
   }
   const auto tremor = Tremor::make(settings.hand, seed);
   if (!tremor) return tremor.error();
-  auto plant = make_plant(path.points().front().p_BH, wanted_first(path, *tremor));
+  auto plant = make_plant(settings, path.points().front().p_BH.cwiseProduct(free_B),
+                          wanted_first(path, *tremor).cwiseProduct(free_B));
   if (!plant) return plant.error();
   const auto firmware = Firmware::make(board, settings.firmware);
   if (!firmware) return firmware.error();
@@ -54,11 +58,11 @@ driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::ArmModel& board
   const auto tip = LoadedTip::make(settings.plant, settings.hand, settings.weight_B);
   if (!tip) return tip.error();
   return SimulatedArm(settings, Hand(std::move(path), *tremor), std::move(plant).value(), *tip,
-                      *firmware, seed);
+                      *firmware, motors, seed);
 }
 
 SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
-                           const LoadedTip& tip, const Firmware& firmware,
+                           const LoadedTip& tip, const Firmware& firmware, int motors,
                            std::uint64_t seed) noexcept
     : report_period_ns_(settings.firmware.report_period_ns),
       wire_(settings.wire),
@@ -70,6 +74,7 @@ SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyP
       gimbal_(settings.gimbal),
       plant_(std::move(plant)),
       tip_(tip),
+      free_B_(driver::free_axes(motors)),
       firmware_(firmware) {
   sample();
   deliver();
@@ -80,7 +85,8 @@ driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver:
                                                 std::uint64_t seed) {
   return make_of(
       arm_model(model), settings, std::move(path), seed,
-      [&](const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) -> driver::Result<AnyPlant> {
+      [&](const SimulatedArmSettings&, const Eigen::Vector3d& p_BT,
+          const Eigen::Vector3d& p_BH) -> driver::Result<AnyPlant> {
         if (settings.links.named() || settings.drive_train.has_joint_friction()) {
           return as_any<AnyPlant>(LinkedSerialPlant::make(model, settings, p_BT, p_BH));
         }
@@ -97,7 +103,8 @@ driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver:
                                                 std::uint64_t seed) {
   return make_of(
       arm_model(model), settings, std::move(path), seed,
-      [&](const Eigen::Vector3d& p_BT, const Eigen::Vector3d& p_BH) -> driver::Result<AnyPlant> {
+      [&](const SimulatedArmSettings&, const Eigen::Vector3d& p_BT,
+          const Eigen::Vector3d& p_BH) -> driver::Result<AnyPlant> {
         if (settings.links.named()) {
           return driver::Error{
               "Link inertia is simulated for serial arms only. Remove the links from the arm "
@@ -114,10 +121,45 @@ driver::Result<SimulatedArm> SimulatedArm::make(const driver::JointModel<driver:
       });
 }
 
+driver::Result<SimulatedArm> SimulatedArm::make_by_inverse(const driver::ArmModel& model,
+                                                           const SimulatedArmSettings& settings,
+                                                           HandPath path, std::uint64_t seed) {
+  if (settings.links.named()) {
+    return driver::Error{
+        "Link inertia is simulated for serial arms only. Remove the links from the arm file."};
+  }
+  const driver::JointModel<BoardGeometry> by_inverse = board_model(model);
+  return make_of(
+      model, settings, std::move(path), seed,
+      [&](const SimulatedArmSettings& used, const Eigen::Vector3d& p_BT,
+          const Eigen::Vector3d& p_BH) -> driver::Result<AnyPlant> {
+        if (used.drive_train.has_joint_friction()) {
+          return as_any<AnyPlant>(RubbingBoardPlant::make(by_inverse, used, p_BT, p_BH));
+        }
+        if (needs_drive_train(used)) {
+          return as_any<AnyPlant>(BoardDriveTrainPlant::make(by_inverse, used, p_BT, p_BH));
+        }
+        return as_any<AnyPlant>(
+            BoardPlant::make(by_inverse, used.plant, used.hand, used.motors, p_BT, p_BH));
+      });
+}
+
+driver::Result<SimulatedArm> SimulatedArm::make(const driver::ArmModel& model,
+                                                const SimulatedArmSettings& settings, HandPath path,
+                                                std::uint64_t seed) {
+  if (std::holds_alternative<driver::SerialArm>(model.geometry)) {
+    return make(driver::model_as<driver::SerialArm>(model), settings, std::move(path), seed);
+  }
+  if (std::holds_alternative<driver::LinkageArm>(model.geometry)) {
+    return make(driver::model_as<driver::LinkageArm>(model), settings, std::move(path), seed);
+  }
+  return make_by_inverse(model, settings, std::move(path), seed);
+}
+
 driver::Result<void> SimulatedArm::fix_mass(double mass, const Eigen::Vector3d& gravity_B) {
   if (auto fixed = tip_.fix_mass(mass, gravity_B); !fixed) return fixed;
   mechanics().take_tip(tip_.dynamics(held_));
-  mechanics().set_pull(tip_.pull_B());
+  mechanics().set_pull(tip_.pull_B().cwiseProduct(free_B_));
   return {};
 }
 
@@ -127,7 +169,7 @@ void SimulatedArm::advance_to(std::int64_t time_ns) noexcept {
     next_ns = std::min({next_ns, next_sample_ns_, firmware_.watchdog_due_ns()});
     if (!messages_.empty()) next_ns = std::min(next_ns, messages_.front().due_ns);
 
-    mechanics().step(hand_.at(next_ns), next_ns - time_ns_);
+    mechanics().step(hand_.at(next_ns).cwiseProduct(free_B_), next_ns - time_ns_);
     time_ns_ = next_ns;
 
     if (next_sample_ns_ == time_ns_) sample();
@@ -165,9 +207,13 @@ void SimulatedArm::sample_into(BoardBytes& report) noexcept {
   const std::uint16_t number = number_++;
   const Eigen::Vector3d turned = gimbal();
   const Eigen::Vector3d q = mechanics().q_about();
-  if (firmware_.sample_about(q, Plant::kAboutError, turned, number, report)) return;
-  if (firmware_.misses_edges()) firmware_.miss_edges(plant().q(), edge_chance_);
-  report = firmware_.sample(plant().q(), turned, number);
+  if (!firmware_.sample_about(q, Plant::kAboutError, turned, number, report)) {
+    if (firmware_.misses_edges()) firmware_.miss_edges(plant().q(), edge_chance_);
+    report = firmware_.sample(plant().q(), turned, number);
+  }
+  if (!firmware_.has_program()) return;
+  firmware_.tick(time_ns_, report);
+  mechanics().set_currents(firmware_.currents());
 }
 
 void SimulatedArm::restart_board() noexcept {

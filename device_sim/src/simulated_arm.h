@@ -52,6 +52,14 @@ class THIMBLE_EXPORT SimulatedArm {
                                            const SimulatedArmSettings& settings, HandPath path,
                                            std::uint64_t seed = 0);
 
+  /// As above, for an arm of any geometry but a delta arm, which has its own bus
+  /// (usb::SimulatedFalcon), and an arm behind its vendor's software. An arm with one or two motors
+  /// moves only on the first axes of its base: the hand, the weight and a fixed mass act along
+  /// these.
+  static driver::Result<SimulatedArm> make(const driver::ArmModel& model,
+                                           const SimulatedArmSettings& settings, HandPath path,
+                                           std::uint64_t seed = 0);
+
   /// Advances to `time_ns`; a time in the past does nothing.
   void advance_to(std::int64_t time_ns) noexcept;
 
@@ -89,6 +97,9 @@ class THIMBLE_EXPORT SimulatedArm {
   /// flight are lost.
   void restart_board() noexcept;
 
+  /// Sets supply, temperature and encoder error that a board with the reference firmware measures.
+  void set_board_health(const BoardHealth& health) noexcept { firmware_.set_health(health); }
+
   /// Presses the button on the arm, as a hand would.
   void press_button() noexcept { firmware_.press_button(); }
 
@@ -116,13 +127,18 @@ class THIMBLE_EXPORT SimulatedArm {
 
  private:
   using AnyPlant = std::variant<ArmPlant, LinkagePlant, SerialDriveTrainPlant,
-                                LinkageDriveTrainPlant, LinkedSerialPlant, RubbingLinkagePlant>;
+                                LinkageDriveTrainPlant, LinkedSerialPlant, RubbingLinkagePlant,
+                                BoardPlant, BoardDriveTrainPlant, RubbingBoardPlant>;
 
   SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
-               const LoadedTip& tip, const Firmware& firmware, std::uint64_t seed) noexcept;
+               const LoadedTip& tip, const Firmware& firmware, int motors,
+               std::uint64_t seed) noexcept;
+  static driver::Result<SimulatedArm> make_by_inverse(const driver::ArmModel& model,
+                                                      const SimulatedArmSettings& settings,
+                                                      HandPath path, std::uint64_t seed);
   template <class MakePlant>
   static driver::Result<SimulatedArm> make_of(const driver::ArmModel& board,
-                                              const SimulatedArmSettings& settings, HandPath path,
+                                              SimulatedArmSettings settings, HandPath path,
                                               std::uint64_t seed, const MakePlant& make_plant);
   Plant& mechanics() noexcept {
     return std::visit([](auto& plant) -> Plant& { return plant; }, plant_);
@@ -141,6 +157,7 @@ class THIMBLE_EXPORT SimulatedArm {
   GimbalMotion gimbal_;
   AnyPlant plant_;
   LoadedTip tip_;
+  Eigen::Vector3d free_B_;  // 1 for each axis along which the tip can move, else 0
   bool held_ = true;
   Firmware firmware_;
   std::int64_t time_ns_ = 0;

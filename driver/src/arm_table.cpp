@@ -9,6 +9,7 @@
 #include "arms/hfab/hfab_wire.h"
 #include "arms/woody/woody_wire.h"
 #include "thimble/driver/wire_arm.h"
+#include "wires/described_arm.h"
 
 namespace thimble::driver {
 namespace {
@@ -22,6 +23,20 @@ std::unique_ptr<const Arm> make(const ArmModel& model) {
         } else {
           return std::make_unique<WireArm<Wire, Geometry>>(
               JointModel<Geometry>{geometry, model.drives, model.encoders, model.gimbal});
+        }
+      },
+      model.geometry);
+}
+
+/// Makes the arm of a model that uses a described wire.
+std::unique_ptr<const Arm> make_described(const ArmModel& model, const WireTable& wire) {
+  return std::visit(
+      [&]<class Geometry>(const Geometry& geometry) -> std::unique_ptr<const Arm> {
+        if constexpr (std::is_same_v<Geometry, VendorPoseArm>) {
+          return nullptr;  // no wire has it
+        } else {
+          return std::make_unique<DescribedArm<Geometry>>(
+              wire, JointModel<Geometry>{geometry, model.drives, model.encoders, model.gimbal});
         }
       },
       model.geometry);
@@ -80,6 +95,9 @@ constexpr std::array<ShapeRow, std::variant_size_v<ArmGeometry>> kShapes{{
     {"polhem", []() noexcept { return arm_model(hfab::polhem_model()); }},
     {"falcon", []() noexcept { return arm_model(falcon::falcon_model()); }},
     {"told", vendor_pose_model},
+    {"paddle", nullptr},
+    {"five_bar", nullptr},
+    {"cartesian", nullptr},
 }};
 
 }  // namespace
@@ -113,7 +131,10 @@ ArmKind kind_of(BoardKind board) noexcept {
   return any == nullptr ? ArmKind::kUnsupported : any->kind;
 }
 
-std::unique_ptr<const Arm> make_arm(ArmKind kind, const ArmModel& model) {
+std::unique_ptr<const Arm> make_arm(ArmKind kind, const ArmModel& model, const WireTable* wire) {
+  if (kind == ArmKind::kDescribed) {
+    return wire == nullptr ? nullptr : make_described(model, *wire);
+  }
   const ArmRow* row = row_of(kind);
   return row == nullptr || row->has_own_link() ? nullptr : row->make(model);
 }

@@ -17,12 +17,21 @@ bool has_word(std::string_view text, std::string_view word) {
   return std::search(text.begin(), text.end(), word.begin(), word.end(), same) != text.end();
 }
 
-/// Returns whether a product string names one of our arms. No published firmware sets one: boards
-/// keep the strings of their makers' examples. A builder of firmware may set it (Teensyduino's
-/// usb_names.h); no other proof is then needed. [chosen]
+/// Returns whether two texts are equal, ignoring case.
+bool is_same_word(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char c, char d) {
+           return std::tolower(static_cast<unsigned char>(c)) ==
+                  std::tolower(static_cast<unsigned char>(d));
+         });
+}
+
+/// Returns whether a product string is that of one of our arms. The whole string is compared,
+/// because the name of another device may contain a part of it. No published firmware sets one:
+/// boards keep the strings of their makers' examples. A builder of firmware may set it
+/// (Teensyduino's usb_names.h); no other proof is then needed. [chosen]
 bool is_ours(std::string_view product) {
-  return has_word(product, "woodenhaptics") || has_word(product, "polhem") ||
-         has_word(product, "haptikfabriken");
+  return is_same_word(product, "woodenhaptics") || is_same_word(product, "polhem") ||
+         is_same_word(product, "haptikfabriken");
 }
 
 /// Returns the name of an arm on Haptikfabriken's protocols from its product string.
@@ -88,6 +97,60 @@ constexpr OwnId kOwnIds[] = {
 };
 
 }  // namespace
+
+bool is_common_product(std::string_view product) {
+  // Words of boards as they are sold, of converters, and of the examples of USB libraries [S
+  // Arduino boards.txt, Teensyduino usb_desc.h, mbed USBDevice.h, pico-sdk usb_descriptors.c,
+  // STM32Cube usbd_desc.c, Espressif usb_descriptors.c, Linux cp210x.c and ftdi_sio_ids.h]. A
+  // product string of such words alone names no arm.
+  constexpr std::string_view kWords[] = {
+      "acm",       "adapter", "bridge",     "board",     "cdc",       "com",         "comport",
+      "composite", "cmsis",   "controller", "converter", "dap",       "daplink",     "debug",
+      "demo",      "device",  "due",        "dual",      "espressif", "ev",          "example",
+      "feather",   "fs",      "gadget",     "hid",       "hs",        "in",          "interface",
+      "leonardo",  "link",    "mega",       "micro",     "mode",      "nano",        "native",
+      "nucleo",    "of",      "pi",         "port",      "prog",      "programming", "quad",
+      "raspberry", "raw",     "rawhid",     "s",         "seeed",     "st",          "test",
+      "the",       "to",      "tool",       "uno",       "unit",      "v",           "virtual",
+      "vcp",       "xiao",    "zephyr",     "zero"};
+  constexpr std::string_view kParts[] = {"arduino", "teensy", "pico", "stm32", "stlink", "uart",
+                                         "usb",     "serial", "jtag", "esp32", "rp20",   "samd",
+                                         "sam3",    "atmega", "cp21", "ft2",   "ft4",    "ch34",
+                                         "pl23",    "mbed",   "mcp22"};
+  const auto is_common_word = [&](const std::string& word) {
+    return word.find_first_not_of("0123456789") == std::string::npos ||
+           std::find(std::begin(kWords), std::end(kWords), word) != std::end(kWords) ||
+           std::any_of(std::begin(kParts), std::end(kParts), [&word](std::string_view part) {
+             return word.find(part) != std::string::npos;
+           });
+  };
+  std::string word;
+  for (const char c : product) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
+      word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      continue;
+    }
+    if (!is_common_word(word)) return false;
+    word.clear();
+  }
+  return is_common_word(word);
+}
+
+bool matches(const DescribedBoard& board, const UsbFacts& facts) {
+  const bool ids = board.vendor_id == facts.vendor_id && board.product_id == facts.product_id;
+  const bool product = board.product.empty() || board.product == facts.product;
+  const bool usage = board.usage_page == 0 ||
+                     (board.usage_page == facts.hid.usage_page && board.usage == facts.hid.usage);
+  const bool connected = board.bulk || (board.serial ? facts.has_tty : facts.has_hidraw);
+  return ids && product && usage && connected;
+}
+
+Certainty certainty_of(const DescribedBoard& board) {
+  const bool named = !board.product.empty() && !is_common_product(board.product);
+  const bool raw_hid_example = board.usage_page == kRawHidPage && board.usage == kRawHidUsage;
+  if (named || (board.usage_page != 0 && !raw_hid_example)) return Certainty::kKnown;
+  return board.proves_itself ? Certainty::kProvesItself : Certainty::kUnknown;
+}
 
 std::optional<BoardIdentity> identify(const UsbFacts& facts) {
   for (const OwnId& own : kOwnIds) {

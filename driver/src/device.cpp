@@ -39,6 +39,11 @@ std::unique_ptr<VelocityEstimator> own_estimate(double corner_frequency) {
   return std::make_unique<VelocityEstimator>(kGateCorner);
 }
 
+/// Returns the projection of a vector in the world to the first `axes` axes of the base.
+Eigen::Matrix3d projection(const Eigen::Matrix3d& R_WB, int axes) {
+  return R_WB.leftCols(axes) * R_WB.leftCols(axes).transpose();
+}
+
 /// Returns the joint torques of the currents in a message, N m.
 Eigen::Vector3d torque_of(const std::array<std::int16_t, 3>& mA,
                           const std::array<MotorDrive, 3>& motors) noexcept {
@@ -67,8 +72,10 @@ Device::Device(std::unique_ptr<ArmLink> link, const DeviceSettings& settings) no
       walls_(std::make_unique<WorkspaceWalls>(settings.walls)),
       enabling_(settings.hold.named() ? std::make_unique<EnablingInput>(settings.hold) : nullptr),
       guarded_(settings.energy.stage != EnergyStage::kNone || settings.heat.named()),
+      partial_(traits_.axes < 3),
       extras_(traits_.has_velocity || traits_.has_orientation || traits_.has_gimbal ||
-              traits_.has_gripper || !traits_.has_counts) {
+              traits_.has_gripper || !traits_.has_counts),
+      along_axes_W_(projection(settings.R_WB, traits_.axes)) {
   state_.has_orientation = traits_.has_orientation;
   state_.has_gripper = traits_.has_gripper;
 }
@@ -409,8 +416,35 @@ void Device::write(const ForceCommand& command) noexcept {
   if (guarded_ && heat_.named()) heat_.advance(state_.dt);
   if (!active_ || lost_) return send_zero();
   if (enabling_ != nullptr && wait_for_hold()) return;
+  if (partial_) return write_along_axes(command);
   if (walls_->hold(state_.p_WT)) return pass_on(command, 0);
   stop_at_walls(command);
+}
+
+/// Returns the part of a force that the motors can exert, and counts the rest.
+Eigen::Vector3d Device::along_axes(const Eigen::Vector3d& f_W) noexcept {
+  constexpr double kNegligible = 1e-9;  // N; far above rounding errors [chosen]
+  const Eigen::Vector3d given = along_axes_W_ * f_W;
+  const Eigen::Vector3d missing = f_W - given;
+  const double squared = missing.squaredNorm();
+  if (squared > kNegligible * kNegligible) {
+    ++missing_force_.ticks;
+    missing_force_.f_W = missing;
+    if (squared > missing_force_.f_strongest_W.squaredNorm()) {
+      missing_force_.f_strongest_W = missing;
+    }
+  }
+  return given;
+}
+
+/// Writes the part of a force that the motors of an arm with one or two motors can exert. The gate
+/// and its stages then see the force that acts.
+void Device::write_along_axes(const ForceCommand& command) noexcept {
+  ForceCommand given = command;
+  given.f_T_W = along_axes(command.f_T_W);
+  given.f_program_W = along_axes_W_ * command.f_program_W;
+  if (walls_->hold(state_.p_WT)) return pass_on(given, 0);
+  stop_at_walls(given);
 }
 
 void Device::hold_until(std::int64_t time_ns) noexcept {
@@ -436,6 +470,7 @@ void Device::stop_at_walls(const ForceCommand& command) noexcept {
     gate_.trip(Fault::kOutsideWorkspace);
   }
   ForceCommand stopped = walls_->stop(command, state_.p_WT, v_gate_W());
+  if (partial_) stopped.f_T_W = along_axes_W_ * stopped.f_T_W;
   wall_counters_.f_W = stopped.f_T_W - command.f_T_W;
   ++wall_counters_.pushed;
   if (wall_counters_.f_W.squaredNorm() > wall_counters_.f_strongest_W.squaredNorm()) {

@@ -101,6 +101,29 @@ std::string tty_node(const fs::path& device) {
   return {};
 }
 
+/// A described board with its certainty.
+struct Described {
+  const DescribedBoard* board = nullptr;
+  Certainty certainty = Certainty::kUnknown;
+};
+
+/// Returns the described board that a device is. If several match, the first of the most certain.
+/// A board that the driver knows by itself needs a proof to be another one.
+Described described_of(const std::vector<DescribedBoard>& boards, const UsbFacts& facts,
+                       const std::optional<BoardIdentity>& known) {
+  Described found;
+  for (const DescribedBoard& board : boards) {
+    if (!matches(board, facts)) continue;
+    const Certainty certainty = certainty_of(board);
+    if (found.board == nullptr || certainty < found.certainty) found = {&board, certainty};
+  }
+  if (found.board == nullptr || !known) return found;
+  const bool taken = known->certainty == Certainty::kUnsupported ||
+                     known->board == BoardKind::kFalconFtdi ||
+                     (known->board != BoardKind::kOther && found.certainty != Certainty::kKnown);
+  return taken ? Described{} : found;
+}
+
 }  // namespace
 
 std::string usb_node(const UsbAddress& address) {
@@ -134,7 +157,8 @@ std::string FoundArm::name() const {
   return "usb-" + std::to_string(usb.bus) + "-" + std::to_string(usb.device);
 }
 
-Result<std::vector<FoundArm>> find_arms(const fs::path& root) {
+Result<std::vector<FoundArm>> find_arms(const fs::path& root,
+                                        const std::vector<DescribedBoard>& described) {
   const fs::path devices = root / "sys/bus/usb/devices";
   std::vector<FoundArm> found;
   if (root == "/") found = find_linked_arms();
@@ -150,19 +174,30 @@ Result<std::vector<FoundArm>> find_arms(const fs::path& root) {
     const std::string product = device_string(device / "product");
     const HidNode hid = hidraw_node(device);
     const std::string tty = tty_node(device);
-    const auto identity = identify({.vendor_id = vendor_id,
-                                    .product_id = product_id,
-                                    .product = product,
-                                    .has_hidraw = !hid.node.empty(),
-                                    .hid = hid.reports,
-                                    .has_tty = !tty.empty()});
-    if (!identity) continue;
+    const UsbFacts facts{.vendor_id = vendor_id,
+                         .product_id = product_id,
+                         .product = product,
+                         .has_hidraw = !hid.node.empty(),
+                         .hid = hid.reports,
+                         .has_tty = !tty.empty()};
+    const auto identity = identify(facts);
+    const Described own = described_of(described, facts, identity);
+    if (!identity && own.board == nullptr) continue;
     FoundArm arm;
-    arm.kind = kind_of(identity->board);
-    arm.board = identity->board;
-    arm.certainty = identity->certainty;
-    arm.arm = identity->arm;
-    arm.bus = identity->bus;
+    if (own.board != nullptr) {
+      arm.kind = ArmKind::kDescribed;
+      arm.board = BoardKind::kDescribed;
+      arm.certainty = own.certainty;
+      arm.arm = own.board->arm;
+      arm.bus = own.board->bulk ? kBulkBus : own.board->serial ? kSerialBus : kHidBus;
+      arm.arm_file = own.board->arm_file;
+    } else {
+      arm.kind = kind_of(identity->board);
+      arm.board = identity->board;
+      arm.certainty = identity->certainty;
+      arm.arm = identity->arm;
+      arm.bus = identity->bus;
+    }
     arm.vendor_id = vendor_id;
     arm.product_id = product_id;
     arm.serial = device_string(device / "serial");

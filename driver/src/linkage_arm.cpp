@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "cross_product.h"
 #include "link_rotation.h"
 #include "math/elementary.h"
 
@@ -12,10 +13,6 @@ namespace {
 /// `across` (m); NaN if there is no such triangle.
 double angle_between(double base, double side, double across) noexcept {
   return math::acos((base * base + side * side - across * across) / (2 * base * side));
-}
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) noexcept {
-  return a.x() * b.y() - a.y() * b.x();
 }
 
 }  // namespace

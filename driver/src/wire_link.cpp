@@ -23,6 +23,13 @@ constexpr LinkStatus link_status(TransportStatus status) noexcept {
   return LinkStatus::kRefused;
 }
 
+/// Returns the number of motors that an arm has: those before the first absent one (MotorDrive).
+int motors_of(const std::array<MotorDrive, 3>& drives) noexcept {
+  int motors = 0;
+  while (motors < 3 && drives[static_cast<std::size_t>(motors)].sign != 0) ++motors;
+  return motors;
+}
+
 }  // namespace
 
 WireLink::WireLink(std::unique_ptr<Transport> transport, std::unique_ptr<const Arm> arm)
@@ -33,6 +40,7 @@ WireLink::WireLink(std::unique_ptr<Transport> transport, std::unique_ptr<const A
               .has_orientation = arm_->has_gimbal(),
               .has_gimbal = arm_->has_gimbal(),
               .zero_at_power_on = arm_->zero_at_power_on(),
+              .axes = motors_of(arm_->drives()),
               .motors = arm_->drives()},
       drives_(arm_->drives()) {}
 

@@ -20,6 +20,9 @@ class SolidOver : public WorldSolid {
   double rounding() const noexcept override { return surface_.rounding(); }
   double stiffness() const noexcept override { return surface_.stiffness(); }
   bool inside(const Eigen::Vector3d& p_W) const noexcept override { return surface_.inside(p_W); }
+  bool in_solid(const Eigen::Vector3d& p_W) const noexcept override {
+    return surface_.in_solid(p_W);
+  }
   bool changes() const noexcept override { return surface_.changes(); }
   bool moves() const noexcept override { return surface_.moves(); }
   SolidMove begin_tick(const driver::DeviceState& state, const Eigen::Vector3d& p_WP,
@@ -41,6 +44,8 @@ class SolidOver : public WorldSolid {
     return surface_.follow(p_W);
   }
   bool follows_closely() const noexcept override { return surface_.follows_closely(); }
+  bool is_exact() const noexcept override { return surface_.is_exact(); }
+  int steps() const noexcept override { return surface_.steps(); }
   const ContactState& follow_closely(const ContactState& last,
                                      const Eigen::Vector3d& p_W) noexcept override {
     return surface_.follow_closely(last, p_W);

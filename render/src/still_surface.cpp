@@ -42,14 +42,15 @@ driver::Result<void> check_choice(const ContactChoice& choice) {
   return {};
 }
 
-driver::Result<StillSurface> prepare_packed(const TriangleMesh& mesh_W,
-                                            const ContactChoice& choice) {
+driver::Result<StillSurface> prepare_packed(const TriangleMesh& mesh_W, const ContactChoice& choice,
+                                            bool is_valid) {
   // Also checks the whole mesh, so that faults are reported as for all other trackers.
-  auto looked = check_contact_mesh_async(mesh_W, true);
+  std::future<driver::Result<CheckedMesh>> looked;
+  if (!is_valid) looked = check_contact_mesh_async(mesh_W, true);
   PackedSurfaceOptions options;
   if (choice.crease_angle) options.crease_angle = *choice.crease_angle;
   auto packed = PackedSurface::build(mesh_W, options);
-  const auto sound = looked.get();
+  const auto sound = is_valid ? driver::Result<CheckedMesh>(CheckedMesh()) : looked.get();
   if (!sound) return sound.error();
   if (sound->turned) packed = PackedSurface::build(*sound->turned, options);
   if (!packed) return packed.error();
@@ -101,10 +102,10 @@ driver::Result<void> check_profile(const ContactChoice& choice) {
 }
 
 driver::Result<StillSurface> prepare_still_surface(const TriangleMesh& mesh_W,
-                                                   const ContactChoice& choice) {
+                                                   const ContactChoice& choice, bool is_valid) {
   if (auto fits = check_choice(choice); !fits) return fits.error();
   if (choice.tip_radius > 0) return prepare_for_ball(mesh_W, choice);
-  if (choice.tracker == TrackerChoice::kPacked) return prepare_packed(mesh_W, choice);
+  if (choice.tracker == TrackerChoice::kPacked) return prepare_packed(mesh_W, choice, is_valid);
   // The god-object does not use edge planes.
   auto prepared =
       ContactMesh::build(mesh_W, {.edge_planes = choice.tracker != TrackerChoice::kGodObject,

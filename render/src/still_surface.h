@@ -32,9 +32,11 @@ struct StillSurface {
 driver::Result<void> check_profile(const ContactChoice& choice);
 
 /// Checks a mesh (W, m) and prepares it for `choice`. The error names incompatible stages, or is
-/// that of ContactMesh::build. Real-time: never from the servo thread.
+/// that of ContactMesh::build. `is_valid`: the mesh is known to be certainly_valid. Real-time:
+/// never from the servo thread.
 THIMBLE_EXPORT driver::Result<StillSurface> prepare_still_surface(const TriangleMesh& mesh_W,
-                                                                  const ContactChoice& choice);
+                                                                  const ContactChoice& choice,
+                                                                  bool is_valid = false);
 
 /// Builds the force law of one object, like the function of that name, over a surface that was
 /// prepared for the same `mesh_W` and `choice`. Precondition: none of its base points moves

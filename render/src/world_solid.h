@@ -50,6 +50,8 @@ class WorldSolid {
   virtual double stiffness() const noexcept = 0;
   /// Returns whether a point is inside.
   virtual bool inside(const Eigen::Vector3d& p_W) const noexcept = 0;
+  /// Returns whether a point is inside the solid itself, without the radius of the tip.
+  virtual bool in_solid(const Eigen::Vector3d& p_W) const noexcept { return inside(p_W); }
 
   /// Returns whether `begin_tick` and `end_tick` must be called in every tick.
   virtual bool changes() const noexcept { return false; }
@@ -81,6 +83,11 @@ class WorldSolid {
   /// Returns whether `follow` itself moves the proxy only over the part of the surface that it can
   /// reach.
   virtual bool follows_closely() const noexcept = 0;
+  /// Returns whether the surface on which `follow` keeps the proxy is that of `inside`: no tracker
+  /// that smooths it.
+  virtual bool is_exact() const noexcept { return follows_closely(); }
+  /// Returns the number of steps of the last `follow`, where each may take tens of microseconds.
+  virtual int steps() const noexcept { return 0; }
   /// Does the same with a proxy that never leaves the part of the surface that it can reach
   /// (GodObjectContact), or by the plane of the last face if the mesh is not in memory. Continues
   /// from the contact `last`.

@@ -65,7 +65,7 @@ maximum time in ms. "the arm switches off": the driver cannot detect the fault, 
 boards 500 ms). It is not known whether a Falcon has a watchdog. The simulated Falcon of these rows has none. If only the arm
 could switch its motors off, nothing is promised, and `-` means that the motors still pulled at the end of the observation. In
 free motion there is no current at the start. "within the limit" is all that can be promised for corrupt bytes that look
-valid, because no wire of these arms has a checksum. The board must handle forces that the cable has corrupted: it accepts no
+valid, because of these wires only that of vintage_described has a checksum. The board must handle forces that the cable has corrupted: it accepts no
 current beyond its range.
 
 ## In simulated time

@@ -137,13 +137,13 @@ forbid_app twin '(share|events|studies|view|bringup|hil|compat|ros2|web|cli)/'
 forbid_app compat '(report|stability|studies|view|bringup|hil|web|cli)/'
 forbid_app ros2 '(report|stability|studies|view|bringup|hil|compat|web|cli)/'
 # Libraries of the compatibility layer link no other library of Thimble, and use only its core.
-for part in core haply hd hdphantom dhd; do
+for part in core haply hd hl hdphantom dhd; do
   [ -d "app/compat/$part" ] || continue
   forbid "app/compat/$part" 'compat/server/|thimble/(session|scene|render|device_sim)/|fmt/|spdlog/|yaml-cpp|hdf5' \
     "a library that must not be in the process of thimble exec"
 done
 for part in core server; do
-  forbid "app/compat/$part" 'compat/(haply|hd|hdphantom|dhd)/|(HD|HDU)/|d[hr]dc\.h' "one API"
+  forbid "app/compat/$part" 'compat/(haply|hd|hl|hdphantom|dhd)/|(HD|HDU|HL)/|d[hr]dc\.h' "one API"
 done
 for folder in bag scene session report web stability studies bringup identified hil twin compat ros2 cli python; do
   forbid "app/$folder" "$graphics" "graphics, which only app/view uses"

@@ -15,7 +15,7 @@ prints() {
       app driver render device_sim --include='*.h' --include='*.cpp' |
       grep -vE '^app/examples/|^app/scene/src/log/(console|printed_text)\.(h|cpp):|gnu::format\(printf|//.*printf' |
       # In the process of another program: the error text of its library, which `thimble exec` has cleaned.
-      grep -vE '^app/compat/hd/hd_device\.cpp:|^app/compat/include/' || true
+      grep -vE '^app/compat/(hd/hd_device|hl/hl)\.cpp:|^app/compat/include/' || true
   )
 }
 

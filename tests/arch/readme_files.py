@@ -7,6 +7,7 @@ readme_files.py SOURCES
 import fnmatch
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
@@ -80,8 +81,8 @@ def mistakes_of(readme, root, tracked):
 
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
-    listed = subprocess.run(["git", "-C", root, "ls-files"], capture_output=True, text=True)
-    if listed.returncode != 0:
+    listed = subprocess.run(["git", "-C", root, "ls-files"], capture_output=True, text=True) if shutil.which("git") else None
+    if listed is None or listed.returncode != 0:
         print("This is not a git checkout, so the files of the tree are unknown.")
         return 77
     tracked = [root / name for name in listed.stdout.splitlines()]

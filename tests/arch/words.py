@@ -10,6 +10,7 @@ import collections
 import fnmatch
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
@@ -47,10 +48,11 @@ TOKEN = re.compile(r'R"([^ ()\\\n]*)\((?:.|\n)*?\)\1"|//[^\n]*|/\*(?:.|\n)*?\*/|
 
 
 def tracked(source):
-    """Returns the files of the project: those in git, or all files if the folder is no clone."""
-    listed = subprocess.run(["git", "-C", source, "ls-files"], capture_output=True, text=True)
-    if listed.returncode == 0 and listed.stdout:
-        return listed.stdout.split("\n")[:-1]
+    """Returns the files of the project: those in git, or all files if the folder is no clone or there is no git."""
+    if shutil.which("git"):
+        listed = subprocess.run(["git", "-C", source, "ls-files"], capture_output=True, text=True)
+        if listed.returncode == 0 and listed.stdout:
+            return listed.stdout.split("\n")[:-1]
     return [str(file.relative_to(source)) for file in pathlib.Path(source).rglob("*")
             if file.is_file() and not str(file.relative_to(source)).startswith(("build", ".git/"))]
 

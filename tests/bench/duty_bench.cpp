@@ -153,6 +153,7 @@ void duty_polhem_text(benchmark::State& state) {
 BENCHMARK(duty_polhem_text);
 
 void duty_falcon(benchmark::State& state) {
+  state.counters["goal_below_ns"] = 400;
   const auto model = driver::falcon::falcon_model();
   ticks(state,
         round_trip(model, model.geometry.p_BM,

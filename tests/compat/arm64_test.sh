@@ -37,6 +37,7 @@ library() {
     -Wl,--version-script="$api.map" -Wl,--no-undefined -o "lib/lib$name.so"
 }
 expect 0 '' library HD hd
+expect 0 '' library HL hl
 expect 0 '' library hdPhantom hdphantom
 expect 0 '' library drd dhd
 ln -s libdrd.so lib/libdhd.so
@@ -47,17 +48,18 @@ client() {  # client SOURCE LIBRARY...
   name=$(basename "$1" .c)
   aarch64-linux-gnu-gcc -O1 -D_GNU_SOURCE -I"$headers" "$1" -Llib "${@:2}" -ldl -lm -o "clients/$name"
 }
-for name in calibration hello_sphere two_callbacks wrong_calls; do
+for name in hd_abi calibration hello_sphere two_callbacks wrong_calls; do
   expect 0 '' client "$source_dir/tests/compat/clients/$name.c" -lHD
 done
 expect 0 '' client "$source_dir/tests/compat/clients/chai_sphere.c"
-for name in hello_force sphere; do
+expect 0 '' client "$source_dir/tests/compat/clients/hl.c" -lHD -lHL
+for name in abi hello_force sphere; do
   mkdir -p dhd_clients
   expect 0 '' client "$source_dir/tests/compat/dhd/clients/$name.c" -ldrd
   mv "clients/$name" "dhd_clients/$name"
 done
 
-for pair in hd=HD hdphantom=hdPhantom dhd=drd; do
+for pair in hd=HD hl=HL hdphantom=hdPhantom dhd=drd; do
   expect_own 0 '^same$' bash -c "diff <(grep -E '^[A-Za-z]' '$compat/${pair%%=*}/symbols.txt' | LC_ALL=C sort) \
     <(aarch64-linux-gnu-nm -D --defined-only lib/lib${pair#*=}.so | awk '{ sub(/@.*/, \"\", \$3); print \$3 }' | LC_ALL=C sort -u) &&
     echo same"
@@ -77,6 +79,9 @@ expect_own 0 'calibrated after 1, 200 x 200 x 200 mm, 5 N, 3 in' arm -- clients/
 expect_own 0 ' 0 out of order, 0 torn' arm -- clients/two_callbacks
 expect_own 0 '2500 turns, [1-9]' arm --hand press.txt -- clients/chai_sphere 2.5
 expect_own 0 'sphere: PASSED' arm --hand press.txt -- dhd_clients/sphere 2.5
+expect_own 0 'ABI of HDAPI: 0 failures' arm --clock virtual -- clients/hd_abi
+expect_own 0 'HL beside HDAPI: 0 failures' arm --clock virtual -- clients/hl
+expect_own 0 'ABI of DHD: 0 failures' arm --clock virtual -- dhd_clients/abi
 expect_own 0 'hello force: PASSED' arm -- dhd_clients/hello_force
 expect 0 'qemu-aarch64 .*hdPhantom.* [0-9]{4} ' arm --hand press.txt -- clients/chai_sphere 2.5
 finish

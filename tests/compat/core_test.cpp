@@ -1,15 +1,20 @@
 // The core of all compatibility libraries: requested forces reach the motors through the gate.
+#include <dlfcn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "byte_lock.h"
 #include "compat/exec_rig.h"
+#include "compat/server/foreign_libraries.h"
 #include "compat/server/read_hand_path.h"
 #include "support/scratch.h"
 
@@ -179,17 +184,54 @@ TEST(CompatCore, ReadsAHandPathAndNamesWrongLines) {
   };
   const auto good = read("# t x y z\n0 0.01 0 -0.02\n\n1.5, 0.02; 0 0 # to the user\n");
   ASSERT_TRUE(good) << good.error().message;
-  ASSERT_EQ(good->size(), 2u);
-  EXPECT_EQ((*good)[1].time, 1.5);
-  EXPECT_EQ((*good)[0].p_W, Vector3d(0.01, 0, -0.02));
-  for (const char* bad : {"0 0 0 0\n0 0 0 0", "0 0 0 0\n1 0 0", "0 0 0 0\n1 0 0 0 0",
-                          "0 0 0 0\n1 0 0 nan", "0 0 0 0\n1 0 0 3", "0 0 0 0\n-1 0 0 0"}) {
+  ASSERT_EQ(good->path.size(), 2u);
+  EXPECT_EQ(good->path[1].time, 1.5);
+  EXPECT_EQ(good->path[0].p_W, Vector3d(0.01, 0, -0.02));
+  EXPECT_TRUE(good->buttons.empty());
+  for (const char* bad :
+       {"0 0 0 0\n0 0 0 0", "0 0 0 0\n1 0 0", "0 0 0 0\n1 0 0 0 0 0", "0 0 0 0\n1 0 0 0 1.5",
+        "0 0 0 0\n1 0 0 0 -1", "0 0 0 0\n1 0 0 0 65536", "0 0 0 0\n1 0 0 0 a", "0 0 0 0\n1 0 0 nan",
+        "0 0 0 0\n1 0 0 3", "0 0 0 0\n-1 0 0 0"}) {
     const auto refused = read(bad);
     ASSERT_FALSE(refused) << bad;
     EXPECT_NE(refused.error().message.find("hand_path.txt:2: expected"), std::string::npos);
   }
   EXPECT_FALSE(read("# nothing\n"));
   EXPECT_FALSE(read_hand_path("/nonexistent/path"));
+}
+
+TEST(CompatCore, HandFileHasButtonsInTheFifthColumn) {
+  const std::string file = support::scratch_folder() / "hand_buttons.txt";
+  std::ofstream(file) << "0 0 0 0\n0.1 0 0 0 3\n0.2 0 0 0\n0.3 0 0 0 2\n";
+  const auto hand = read_hand_path(file);
+  ASSERT_TRUE(hand) << hand.error().message;
+  scene::ButtonPlan plan(hand->buttons);
+  for (const auto& [time, buttons] :
+       {std::pair(0.05, 0), {0.1, 3}, {0.15, 3}, {0.2, 0}, {0.35, 2}, {99.0, 2}}) {
+    EXPECT_EQ(plan.at(time), buttons) << time;
+  }
+}
+
+TEST(CompatCore, ProgramSeesPressesOfSimulatedButtons) {
+  ExecOptions options = in_step();
+  options.presses = {{.begin = 0.05, .duration = 0.02, .buttons = 1},
+                     {.begin = 0.06, .duration = 0.03, .buttons = 4}};
+  ExecRig rig(options);
+  ASSERT_EQ(arms::open(0, "test"), "");
+  ArmReading reading;
+  arms::read(0, reading);
+  const std::int64_t begin_ns = reading.time_ns;
+  int seen[5] = {};
+  for (int tick = 0; tick < 120; ++tick) {
+    ExecRig::wait(0, 1);
+    arms::read(0, reading);
+    ASSERT_LE(reading.buttons, 5);
+    ASSERT_GE(reading.time_ns, begin_ns);
+    ++seen[reading.buttons == 5 ? 2 : reading.buttons];
+  }
+  EXPECT_EQ(seen[1], 10) << "only the first: 50 to 60 ms";
+  EXPECT_EQ(seen[2], 10) << "both: 60 to 70 ms";
+  EXPECT_EQ(seen[4], 20) << "only the third: 70 to 90 ms";
 }
 
 TEST(CompatCore, RefusesUnknownAndClosedArms) {
@@ -298,6 +340,68 @@ TEST(CompatCore, SecondProgramIsRefused) {
   ASSERT_EQ(arms::open(0, "test"), "");
   other.go();
   EXPECT_EQ(other.end(), 0);
+}
+
+TEST(CompatCore, ArmIsTakenOnlyForOtherPrograms) {
+  ExecRig rig;
+  OtherProgram other(rig, [] { return arms::is_taken(0) ? 0 : 1; });
+  EXPECT_FALSE(arms::is_taken(0));
+  ASSERT_EQ(arms::open(0, "test"), "");
+  EXPECT_FALSE(arms::is_taken(0));
+  other.go();
+  EXPECT_EQ(other.end(), 0);
+}
+
+TEST(CompatCore, OneLibraryOfAProcessListsTheArms) {
+  ExecRig rig;
+  OtherProgram other(rig, [] { return arms::listed("hdPhantom") == 1 ? 0 : 1; });
+  EXPECT_EQ(arms::listed("DHD"), 1);
+  EXPECT_EQ(arms::listed("hdPhantom"), 0);
+  EXPECT_EQ(arms::listed("HDAPI"), 0);
+  EXPECT_EQ(arms::listed("DHD"), 1);
+  other.go();
+  EXPECT_EQ(other.end(), 0) << "another process has its own list";
+}
+
+TEST(CompatCore, BothInterfacesOfALibraryListTheArms) {
+  ExecRig rig;
+  ASSERT_EQ(arms::open(0, "DRD"), "");
+  EXPECT_EQ(arms::listed("DHD"), 1);
+  EXPECT_EQ(arms::listed("HDAPI"), 0);
+}
+
+TEST(CompatCore, FindsVendorsLibrariesOfOtherFolders) {
+  const std::filesystem::path folder = support::scratch_folder();
+  const std::filesystem::path library = folder / "libdrd.so.3.17";
+  std::filesystem::copy_file(THIMBLE_A_LIBRARY, library,
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_TRUE(foreign_libraries(getpid(), folder).empty());
+  void* const loaded = dlopen(library.c_str(), RTLD_NOW);
+  ASSERT_NE(loaded, nullptr) << dlerror();
+  const std::set<std::string> found = foreign_libraries(getpid(), "/nonexistent");
+  EXPECT_EQ(found, std::set<std::string>{std::filesystem::canonical(library).string()});
+  EXPECT_TRUE(foreign_libraries(getpid(), folder).empty()) << "the folder of our own libraries";
+  EXPECT_TRUE(foreign_libraries(-1, folder).empty());
+  const pid_t child = fork();
+  if (child == 0) _exit(foreign_libraries(getppid(), "/nonexistent").empty() ? 1 : 0);
+  int status = 1;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  dlclose(loaded);
+}
+
+TEST(CompatCore, LibraryThatOpensAnArmListsTheArms) {
+  ExecRig rig;
+  ASSERT_EQ(arms::open(0, "HDAPI"), "");
+  EXPECT_EQ(arms::listed("hdPhantom"), 0);
+  EXPECT_EQ(arms::listed("HDAPI"), 1);
+}
+
+TEST(CompatCore, ArmsAreListedToMoreProcessesThanEntries) {
+  ExecRig rig;
+  for (std::atomic<std::uint64_t>& entry : rig.channel().listings) entry.store(0x100);
+  EXPECT_EQ(arms::listed("DHD"), 1);
+  EXPECT_EQ(arms::listed("hdPhantom"), 1);
 }
 
 TEST(CompatCore, SecondProgramChangesNoLimit) {

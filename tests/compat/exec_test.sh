@@ -33,7 +33,37 @@ expect_own 0 'vintage_phantom and falcon' run --arm vintage_phantom --arm falcon
 expect 2 '^Wrong +hdInitDevice 1 ' run "$clients/two_devices"
 expect_own 0 '0\.[23][0-9]+ N at the end' run "$clients/force_ramp"
 expect_own 0 '0 presses in' run "$clients/buttons"
+expect_own 0 '2 presses in' run --button-at 0.05:1:0.1 --button-at 0.25 --button-at 0.3:2 "$clients/buttons" 2
+expect_error 2 '--button-at 17' run --button-at 1:17 "$clients/buttons"
 expect_own 0 'errors by value: right' run --arm vintage_phantom --arm falcon "$clients/wrong_calls"
+
+# A program that knows only the makers' headers.
+expect_own 0 'ABI of HDAPI: 0 failures' run --clock virtual "$clients/hd_abi"
+
+# The helpers of the headers, in C and in C++.
+libraries=$(dirname "$thimble")/compat/lib
+expect_own 0 '0 failures' env LD_LIBRARY_PATH="$libraries" "$clients/hdu"
+expect_own 0 '0 failures' env LD_LIBRARY_PATH="$libraries" "$clients/hdu_cxx"
+
+# A program that uses HL beside HDAPI.
+expect_own 0 'HL beside HDAPI: 0 failures' run --clock virtual "$clients/hl"
+expect_words 0 'hlCreateContext HDAPI' run --clock virtual "$clients/hl"
+expect_words 0 'hlCreateContext 1' run --clock virtual "$clients/hl"
+
+# Two libraries in one program: each arm is listed once, and a refused opening takes nothing from the owner.
+expect_own 0 'listed again 0, opened -1, 0.300 N before, 0.300 N after' run --clock virtual "$clients/two_libraries"
+expect_own 0 'listed again 0, opened -1, 0.300 N before, 0.300 N after' run --clock virtual "$clients/two_libraries" second
+
+# A copy of a library that a program brings with it is reported, and wrappers find ours where the vendor's SDK is expected.
+mkdir own
+cp "$(dirname "$thimble")/compat/lib/libHD.so" own/
+expect_words 0 'loaded own/libHD.so' run --hand press.txt sh -c "LD_PRELOAD='$work/own/libHD.so' '$clients/hello_sphere' 1"
+expect_words 0 'loaded own/libHD.so' run --hand press.txt python3 -c "
+import ctypes, time
+ctypes.CDLL('$work/own/libHD.so')
+time.sleep(0.3)"
+expect_own 0 'libdrd.so.3' run sh -c 'ls "$FDSDK/lib/release/lin-$(uname -m)-gcc/"'
+expect 0 '^Program +two_libraries \(DRD\)' run --clock virtual "$clients/two_libraries"
 
 # A loop paced by its set-force calls. Its rate is printed but not checked: a program that waits for a tick has
 # fewer cycles than there were ticks.

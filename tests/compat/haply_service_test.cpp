@@ -20,7 +20,6 @@
 #include "exec_rig.h"
 #include "thimble/driver/device.h"
 #include "thimble/scene/arm_file.h"
-#include "thimble/scene/device_settings.h"
 #include "thimble/scene/real_arm.h"
 #include "vendors/haply/haply_link.h"
 #include "vendors/haply/haply_message.h"

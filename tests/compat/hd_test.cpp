@@ -6,6 +6,7 @@
 #include <map>
 
 #include "compat/exec_rig.h"
+#include "compat/hd_frames.h"
 
 namespace thimble::compat {
 namespace {
@@ -14,34 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kQuantum = 0.005;  // N
 
-HDErrorInfo drain() {
-  HDErrorInfo oldest{HD_SUCCESS, 0, 0};
-  for (HDErrorInfo error = hdGetError(); error.errorCode != HD_SUCCESS; error = hdGetError()) {
-    oldest = error;
-  }
-  return oldest;
-}
-
-/// Runs `work` in a frame of each of `ticks` ticks.
-template <class Work>
-void frames(HHD device, int ticks, Work work) {
-  for (int i = 0; i < ticks; ++i) {
-    hdBeginFrame(device);
-    work();
-    hdEndFrame(device);
-    arms::wait_until_taken(static_cast<int>(device));
-    ExecRig::wait(static_cast<int>(device), 1);
-  }
-}
-
-struct CompatHd : ::testing::Test {
-  CompatHd() { drain(); }
-  ~CompatHd() override {
-    hdStopScheduler();
-    for (HHD device = 0; device < kArmsMax; ++device) hdDisableDevice(device);
-    drain();
-  }
-};
+using CompatHd = HdTest;
 
 TEST_F(CompatHd, MotorsGetTheForceInHdapiAxes) {
   ExecRig rig;
@@ -49,7 +23,7 @@ TEST_F(CompatHd, MotorsGetTheForceInHdapiAxes) {
   ASSERT_EQ(hdInitDevice(HD_DEFAULT_DEVICE), 0u);
   hdEnable(HD_FORCE_OUTPUT);
   const std::array<double, 3> f{0.2, 0.1, -0.15};  // right, up, to the user
-  frames(0, 400, [&] { hdSetDoublev(HD_CURRENT_FORCE, f.data()); });
+  hd_frames(0, 400, [&] { hdSetDoublev(HD_CURRENT_FORCE, f.data()); });
   // Our world: x to the user, y right, z up.
   EXPECT_LT((rig.motors.force_W() - Vector3d(f[2], f[0], f[1])).norm(), kQuantum)
       << rig.motors.force_W().transpose();
@@ -68,16 +42,6 @@ TEST_F(CompatHd, MotorsGetTheForceInHdapiAxes) {
   }
   EXPECT_EQ(T[15], 1);
   EXPECT_EQ(hdGetError().errorCode, HD_SUCCESS);
-}
-
-TEST_F(CompatHd, KeepsTheForceInLaterFrames) {
-  ExecRig rig;
-  hdInitDevice("Default Device");
-  hdEnable(HD_FORCE_OUTPUT);
-  const std::array<double, 3> f{0.2, 0, 0};
-  frames(0, 1, [&] { hdSetDoublev(HD_CURRENT_FORCE, f.data()); });
-  frames(0, 400, [] {});
-  EXPECT_NEAR(rig.motors.force_W().y(), 0.2, kQuantum);
 }
 
 TEST_F(CompatHd, FindsArmsByCommonNames) {
@@ -189,7 +153,7 @@ TEST_F(CompatHd, RampsTheForceIfEnabled) {
   int tick = 0;
   ArmReading begin, now;
   arms::read(0, begin);
-  frames(0, 500, [&] {
+  hd_frames(0, 500, [&] {
     hdSetDoublev(HD_CURRENT_FORCE, f.data());
     arms::read(0, now);
     if (++tick > 10) {
@@ -199,7 +163,7 @@ TEST_F(CompatHd, RampsTheForceIfEnabled) {
     if (tick == 200) half = now.f_client_W[2];
   });
   EXPECT_GT(half, 0.05);
-  frames(0, 300, [&] { hdSetDoublev(HD_CURRENT_FORCE, f.data()); });
+  hd_frames(0, 300, [&] { hdSetDoublev(HD_CURRENT_FORCE, f.data()); });
   EXPECT_NEAR(rig.motors.force_W().z(), 0.3, kQuantum);
 }
 
@@ -209,7 +173,7 @@ TEST_F(CompatHd, ReportsForcesLimitedByTheGate) {
   hdEnable(HD_FORCE_OUTPUT);
   std::map<HDerror, int> seen;
   const std::array<double, 3> f{0, 30, 0};
-  frames(0, 60, [&] {
+  hd_frames(0, 60, [&] {
     hdSetDoublev(HD_CURRENT_FORCE, f.data());
     for (HDErrorInfo e = hdGetError(); HD_DEVICE_ERROR(e); e = hdGetError()) ++seen[e.errorCode];
   });
@@ -225,7 +189,7 @@ TEST_F(CompatHd, ClampsTheForceWithoutErrorIfEnabled) {
   const std::array<double, 3> f{0, 30, 0};
   double highest = 0;
   ArmReading reading;
-  frames(0, 40, [&] {
+  hd_frames(0, 40, [&] {
     hdSetDoublev(HD_CURRENT_FORCE, f.data());
     arms::read(0, reading);
     highest = std::max(highest, reading.f_client_W[2]);
@@ -240,16 +204,16 @@ TEST_F(CompatHd, ReportsAFaultUntilForceIsEnabledAgain) {
   hdInitDevice(nullptr);
   hdEnable(HD_FORCE_OUTPUT);
   const std::array<double, 3> none{std::nan(""), 0, 0}, f{0.1, 0, 0};
-  frames(0, 3, [&] { hdSetDoublev(HD_CURRENT_FORCE, none.data()); });
+  hd_frames(0, 3, [&] { hdSetDoublev(HD_CURRENT_FORCE, none.data()); });
   std::map<HDerror, int> seen;
-  frames(0, 20, [&] {
+  hd_frames(0, 20, [&] {
     hdSetDoublev(HD_CURRENT_FORCE, f.data());
     for (HDErrorInfo e = hdGetError(); HD_DEVICE_ERROR(e); e = hdGetError()) ++seen[e.errorCode];
   });
   EXPECT_EQ(seen[HD_DEVICE_FAULT], 1);
   EXPECT_EQ(rig.motors.force_W().norm(), 0);
   hdEnable(HD_FORCE_OUTPUT);
-  frames(0, 700, [&] { hdSetDoublev(HD_CURRENT_FORCE, f.data()); });
+  hd_frames(0, 700, [&] { hdSetDoublev(HD_CURRENT_FORCE, f.data()); });
   EXPECT_NEAR(rig.motors.force_W().y(), 0.1, kQuantum);
 }
 
@@ -260,7 +224,7 @@ TEST_F(CompatHd, AppliesTheSpeedLimitOfTheProgram) {
   const double slow = 20;  // mm/s; the hand moves ten times as fast
   hdSetDoublev(HD_SOFTWARE_VELOCITY_LIMIT, &slow);
   std::map<HDerror, int> seen;
-  frames(0, 300, [&] {
+  hd_frames(0, 300, [&] {
     for (HDErrorInfo e = hdGetError(); HD_DEVICE_ERROR(e); e = hdGetError()) ++seen[e.errorCode];
   });
   EXPECT_EQ(seen[HD_EXCEEDED_MAX_VELOCITY], 1);
@@ -300,7 +264,7 @@ TEST_F(CompatHd, ConvertsJointTorquesToTipForce) {
   hdEnable(HD_FORCE_OUTPUT);
   const std::array<double, 3> tau{10, -5, 8};  // N mm
   std::array<double, 3> made{};
-  frames(0, 400, [&] { hdSetDoublev(HD_CURRENT_JOINT_TORQUE, tau.data()); });
+  hd_frames(0, 400, [&] { hdSetDoublev(HD_CURRENT_JOINT_TORQUE, tau.data()); });
   hdGetDoublev(HD_CURRENT_JOINT_TORQUE, made.data());
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(made[i], tau[i], 0.5);
 }

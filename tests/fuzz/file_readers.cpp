@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "arm/wire_section.h"
 #include "disk_paging/checksum.h"
 #include "disk_paging/page_file.h"
 #include "mesh/repair/touching_parts.h"
@@ -95,6 +96,23 @@ bool read_scene_file(Bytes bytes) {
     // An infinite requested force is the gate's task; this fuzzer checks what a tick executes and
     // reads.
     static_cast<void>(command);
+  }
+  return true;
+}
+
+/// Reads the section `wire` of an arm file; messages of an accepted one can be written and read.
+bool read_wire_file(Bytes bytes) {
+  const auto wire = scene::load_wire(store(bytes, "any.yaml"));
+  if (!accepted(wire)) return false;
+  for (const driver::WireLayout* layout : {&(*wire)->report, &(*wire)->command}) {
+    driver::WireValues values;
+    values.encoders = {1, -2, 3};
+    std::array<std::byte, driver::kReportCapacity> message{};
+    const std::size_t size = layout->write(values, message);
+    check(size > 0 && size <= message.size(), "a message fits its buffer");
+    static_cast<void>(layout->read(Bytes(message).first(size), values));
+    static_cast<void>(layout->read(bytes, values));
+    static_cast<void>(layout->values_of(Bytes(message).first(size)));
   }
   return true;
 }
@@ -252,6 +270,7 @@ bool read_recording(Bytes bytes) {
 bool read_any_file(std::string_view kind, Bytes bytes) {
   if (kind == "scene") return read_scene_file(bytes);
   if (kind == "arm") return accepted(scene::load_arm(store(bytes, "any.yaml")));
+  if (kind == "wire") return read_wire_file(bytes);
   if (kind == "off") return read_mesh(bytes, "any.off");
   if (kind == "obj") return read_mesh(bytes, "any.obj");
   if (kind == "stl") return read_mesh(bytes, "any.stl");

@@ -9,9 +9,9 @@ namespace thimble::fuzz {
 
 /// Kinds of files that the program reads. The corpus of each is the folder of its name in
 /// tests/fuzz/files.
-inline constexpr std::array<std::string_view, 14> kFileKinds{
-    "scene", "arm", "off", "obj", "stl", "ply",  "gltf",
-    "glb",   "3mf", "dae", "amf", "3ds", "page", "recording"};
+inline constexpr std::array<std::string_view, 15> kFileKinds{
+    "scene", "arm", "wire", "off", "obj", "stl",  "ply",      "gltf",
+    "glb",   "3mf", "dae",  "amf", "3ds", "page", "recording"};
 
 /// Reads bytes as a file of a kind with the program's own functions, and uses the result as the
 /// program would. Every reader must survive any bytes: it returns an error with a message, or a

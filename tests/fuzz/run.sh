@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fuzzes the readers of arm messages, of USB/IP and of the memory shared with viewers, for 4 s each
+# Fuzzes the readers of arm messages, of USB/IP, of the memory shared with viewers and of described wires, for 4 s each
 # (THIMBLE_FUZZ_SECONDS sets another time), or with THIMBLE_LONG every single decoder for 60 s,
 # one per processor at a time. Skipped if the fuzzer was not built.
 #   tests/fuzz/run.sh BUILD_DIR CORPUS
@@ -27,12 +27,12 @@ fuzz() {  # fuzz NAME DECODERS SECONDS
   echo "$1: $(grep -oE 'number_of_executed_units: *[0-9]+' "$1.log")"
 }
 # Numbers as in decode_anything.
-arms=0-8 usbip=9-10 memory=11-11
+arms=0-8 usbip=9-10 memory=11-11 wires=12-15
 if [ -z "${THIMBLE_LONG:-}" ]; then
-  for name in arms usbip memory; do fuzz "$name" "${!name}" "${THIMBLE_FUZZ_SECONDS:-4}"; done
+  for name in arms usbip memory wires; do fuzz "$name" "${!name}" "${THIMBLE_FUZZ_SECONDS:-4}"; done
   exit
 fi
 export -f fuzz
 export fuzzer corpus work
-seq 0 "${memory%-*}" |
+seq 0 "${wires#*-}" |
   xargs -P "$(nproc)" -I{} bash -c 'set -euo pipefail; fuzz decoder_{} {}-{} 60'

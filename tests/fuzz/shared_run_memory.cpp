@@ -32,7 +32,14 @@ std::vector<std::byte> sound_memory() {
   scene.arms.front().geometry = driver::DeltaArm{.a = 0.05, .b = 0.05, .c = 0.05, .r = 0.05};
   scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   scene.triangles = {{0, 1, 2}, {3, 4, 5}, {4, 3, 5}};
-  scene.objects.push_back({.name = "a", .moves = true, .vertex_count = 3, .triangle_count = 1});
+  scene.objects.push_back({.name = "a",
+                           .moves = true,
+                           .vertex_count = 3,
+                           .triangle_count = 1,
+                           .collider_first_vertex = 3,
+                           .collider_vertex_count = 3,
+                           .collider_first_triangle = 1,
+                           .collider_triangle_count = 2});
   scene.objects.push_back({.name = "b",
                            .dents = true,
                            .shaped = true,
@@ -91,6 +98,14 @@ void read_everything(session::SharedReader& reader) {
     check(object.first_vertex + object.vertex_count <= scene.vertices.size() &&
               object.first_triangle + object.triangle_count <= scene.triangles.size(),
           "an object is within its tables");
+    for (std::size_t t = 0; t < object.collider_triangle_count; ++t) {
+      for (const std::uint32_t v : scene.triangles[object.collider_first_triangle + t]) {
+        check(v >= object.collider_first_vertex &&
+                  v - object.collider_first_vertex < object.collider_vertex_count &&
+                  v < scene.vertices.size(),
+              "a triangle that collides has vertices");
+      }
+    }
     render::TriangleMesh mesh;
     mesh.vertices.assign(object.vertex_count, Eigen::Vector3d::Zero());
     for (std::size_t t = 0; t < object.triangle_count; ++t) {

@@ -52,7 +52,10 @@ for arm in "$source_dir"/app/arms/*.yaml; do
     expect_error 2 calibrated "$thimble" calibrate --dry-run --arm "$arm"
     continue
   fi
-  expect_run 0 .contact.touch_downs '>' 0 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm "$arm"
+  scene=$source_dir/tests/data/scenes/two_boxes.yaml
+  # The line of a paddle is between the boxes.
+  if grep -q '^shape: paddle' "$arm"; then scene=$source_dir/app/scenes/ice.yaml; fi
+  expect_run 0 .contact.touch_downs '>' 0 "$thimble" run "$scene" --arm "$arm"
   expect 0 '^ok +force z' "$thimble" feel-check --arm "$arm"
   expect 0 '^motor_sign' "$thimble" calibrate --dry-run --arm "$arm"
 done
@@ -86,11 +89,11 @@ expect_words 3 '--arm NAME' "$thimble" calibrate --device auto
 
 # Identified constants go into a new file, which runs; no existing file is overwritten, and a reversed
 # motor is named before any motion depends on it.
-expect_words 0 'twin.yaml' "$thimble" identify --arm "$vintage" --seconds 10 --known-mass 0.025 --places 0 \
+expect_words 0 'twin.yaml' "$thimble" identify --arm "$vintage" --duration 10 --known-mass 0.025 --places 0 \
   --output twin.yaml
 expect 0 'mass: 0\.07[45][0-9]*  # kg, apparent \[I ' cat twin.yaml
 expect_run 0 .contact.touch_downs '>' 0 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm twin.yaml
-expect_words 0 'report/index.html' "$thimble" identify --arm "$vintage" --seconds 10 --output told.yaml --report report
+expect_words 0 'report/index.html' "$thimble" identify --arm "$vintage" --duration 10 --output told.yaml --report report
 expect 0 '<li><b>Scale</b>: ' cat report/index.html
 expect 0 '<li><b>Links</b>: .* 8 ' cat report/index.html
 expect 1 '' grep -q 'links:' told.yaml
@@ -106,33 +109,41 @@ if command -v gnuplot >/dev/null; then
   expect_plot report/identify_fit report/identify_rest report/identify_friction report/identify_lines
   expect 0 '^4$' grep -c '^<svg' report/index.html
 fi
+# An arm with two motors has no places by default, and no panels of an absent motor; an arm file with a low
+# limit lowers the default force.
+expect 0 '^--places ' "$thimble" identify --arm five_bar --duration 10 --output planar.yaml --report planar
+expect 0 '' test -e planar.yaml
+expect 0 '' test -e planar/index.html
+expect_words 2 '--places' "$thimble" identify --arm five_bar --places 5 --output no.yaml
+sed 's/^  force_max: 3 .*/  force_max: 0.5/' "$source_dir/app/arms/five_bar.yaml" >weak.yaml
+expect 0 '^--max-force .*0\.5' "$thimble" identify --arm weak.yaml --duration 10 --output weak_found.yaml
 # Links are measured over the workspace; a file with other links gets the measured ones.
 sed 's/^simulation:/&\n  links: {inertia: [0.0004, 0.0005, 0.0003], yaw_b: 0.0005, yaw_c: 0.0003}/' "$vintage" >linked.yaml
-expect 0 '' "$thimble" identify --arm linked.yaml --seconds 10 --output links.yaml \
+expect 0 '' "$thimble" identify --arm linked.yaml --duration 10 --output links.yaml \
   --report links
 expect 0 'links: \{inertia: .*yaw_c: .*\}  # inertia: kg m\^2 about A, B and C \[I ' cat links.yaml
 expect_run 0 .contact.touch_downs '>' 0 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm links.yaml
-expect 5 '^BAD FIT' "$thimble" identify --arm linked.yaml --seconds 10 --output no.yaml --places 0 --report bad
+expect 5 '^BAD FIT' "$thimble" identify --arm linked.yaml --duration 10 --output no.yaml --places 0 --report bad
 expect_json bad/figures.json '[name=model_misfits].met' == false
 expect 1 '' test -e no.yaml
 if command -v gnuplot >/dev/null; then
   expect_plot links/identify_masses
   expect 0 '^5$' grep -c '^<svg' links/index.html
 fi
-expect_words 2 'twin.yaml' "$thimble" identify --arm "$vintage" --seconds 10 --output twin.yaml
+expect_words 2 'twin.yaml' "$thimble" identify --arm "$vintage" --duration 10 --output twin.yaml
 expect_error 4 'Motor 1' "$thimble" identify --arm reversed.yaml --output no.yaml
 expect 1 '' test -e no.yaml
 sed 's/^simulation:/&\n  drive_train: {stiffness: [20, 20, 20], inertia: [0.0005, 0.0005, 0.0005], damping: [0.01, 0.01, 0.01]}/' \
   "$vintage" >springy.yaml
-expect 0 '' "$thimble" identify --arm springy.yaml --seconds 10 --output soft.yaml
+expect 0 '' "$thimble" identify --arm springy.yaml --duration 10 --output soft.yaml
 expect 0 'drive_train: .*stiffness: \[(19|20)[.0-9]*, (19|20)[.0-9]*, (19|20)[.0-9]*\]' cat soft.yaml
 # Behind cables the friction of a joint is a constant.
 sed 's/damping: \[0.01/coulomb: [0, 0.02, 0], &/' springy.yaml >sticky.yaml
-expect 0 ' 2 +(19|20)[.0-9]* \+- .* mN m ' "$thimble" identify --arm sticky.yaml --seconds 10 \
+expect 0 ' 2 +(19|20)[.0-9]* \+- .* mN m ' "$thimble" identify --arm sticky.yaml --duration 10 \
   --output stuck.yaml
 expect 0 'coulomb: \[0, 0\.0(19|20)[0-9]*, 0\]' cat stuck.yaml
 # Arms whose motors are built in: the results are in the new file, which runs.
-expect 0 '' "$thimble" identify --arm falcon --seconds 10 --output found.yaml
+expect 0 '' "$thimble" identify --arm falcon --duration 10 --output found.yaml
 expect 0 'torque_constant: .* 1 A being 1000 motor values \[I ' cat found.yaml
 expect 0 '^ *# delay from force to motion: 0\.00[0-9]* ' cat found.yaml
 expect_run 0 .ticks == 100 "$thimble" run "$source_dir/tests/data/scenes/two_boxes.yaml" --arm found.yaml --duration 0.1

@@ -36,6 +36,7 @@ class Terminal:
             for fd in (0, 1, 2):
                 os.dup2(self.line, fd)
             os.closerange(3, 64)
+            os.environ["TERM"] = "xterm"  # progress is not shown at a dumb terminal
             os.execvp(command[0], command)
 
     def fail(self, why):

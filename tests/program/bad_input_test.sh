@@ -15,7 +15,7 @@ tetrahedron() {
 
 # Meshes.
 tetrahedron >good.off
-expect 0 '' "$thimble" mesh good.off --json good.json
+expect 0 '' "$thimble" mesh good.off --output good.json
 expect_json good.json .touchable == true
 expect 2 'no_such.off' "$thimble" mesh no_such.off
 expect 2 'folder' "$thimble" mesh .
@@ -30,7 +30,7 @@ tetrahedron | sed 's/^1 0 0$/1e300 0 0/' >huge.off
 expect 2 'huge\.off:4' "$thimble" mesh huge.off
 tetrahedron | sed '$d' >open.off
 sed -i 's/^4 4 0/4 3 0/' open.off
-expect 2 '' "$thimble" mesh open.off --json open.json
+expect 2 '' "$thimble" mesh open.off --output open.json
 expect_json open.json '.faults[kind=open_edge].count' == 3
 tetrahedron | head -c 40 >truncated.off
 expect 2 'truncated\.off' "$thimble" mesh truncated.off
@@ -56,7 +56,7 @@ mkdir folder.off
 expect_words 2 'folder.off' "$thimble" mesh folder.off
 # Faces with more corners are split: a cube of six squares can be touched.
 printf 'OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n' >cube.off
-expect 0 '' "$thimble" mesh cube.off --json cube.json
+expect 0 '' "$thimble" mesh cube.off --output cube.json
 expect_json cube.json .triangles == 12
 
 # Scenes.

@@ -7,7 +7,7 @@ scenes=$source_dir/app/scenes
 expect 0 '' "$thimble" run "$scenes/box.yaml" --duration 0.2 --report out
 expect_json out/report.json .ticks == 200
 expect_plot out/force_and_depth
-for command in "study friction --out x" "bench box --seconds 1" "mesh a.off" doctor "replay --verify x"; do
+for command in "study friction --output x" "bench box --duration 1" "mesh a.off" doctor "replay --verify x"; do
   # shellcheck disable=SC2086
   expect 2 'app/setup.sh release thimble' "$thimble" $command
 done

@@ -65,7 +65,7 @@ plain "$thimble" help "$hostile"
 plain "$thimble" help scene "$hostile"
 plain "$thimble" tune $scene
 plain "$thimble" tune "$hostile"
-plain "$thimble" shot "$hostile" --out x.png
+plain "$thimble" shot "$hostile" --output x.png
 plain "$thimble" bench "$hostile"
 plain "$thimble" study "$hostile"
 plain "$thimble" doctor

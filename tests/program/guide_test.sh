@@ -90,6 +90,11 @@ for row in 'ball, segment' 'torus, segment' 'ball, nearest point' 'torus, neares
     { echo "FAILED: compare.md gives other times of searches than render/src/search/README.md: $row" >&2 && exit 1; }
 done
 
+# The animation of the README: app/pictures.sh draws it, below 1.5 MB.
+animation=$(sed -nE 's/^!\[.*\]\((app\/pictures\/.*\.gif)\)$/\1/p' "$source/README.md")
+[ -n "$animation" ] && [ "$(stat -c %s "$source/$animation")" -lt 1500000 ] && grep -qF "${animation##*/}" "$source/app/pictures.sh" ||
+  { echo "FAILED: the README has no animation below 1.5 MB that app/pictures.sh draws" >&2 && exit 1; }
+
 # The guide as a site, strictly: no dead link, no page outside the menu.
 bash "$source/app/guide/site.sh" "$work/pages" || {
   [ $? = 3 ] || { echo "FAILED: the guide's pages" >&2 && exit 1; }

@@ -8,6 +8,7 @@ me=hand$$
 
 # Options that exclude each other are refused, with the correct usage.
 expect_words 2 '--rumble --view' "$thimble" run "$scene" --sound
+expect_words 2 '--theme --view' "$thimble" run "$scene" --theme dark
 expect_words 2 '--clock' "$thimble" run "$scene" --view --clock virtual --sound
 expect_words 2 'gamepad simulated' \
   "$thimble" run "$scene" --device auto --hand gamepad

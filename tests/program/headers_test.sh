@@ -18,8 +18,8 @@ cd "$work/usr/include"
 # Those in thimble/compat are other makers' APIs, which users of Thimble's API do not include: they do not count.
 find thimble -path thimble/compat -prune -o -name '*.h' -print | sort >"$work/headers"
 cut -d/ -f2 "$work/headers" | sort | uniq -c
-# thimble/version.h, which CMake writes (driver/version.h.in), and thimble/driver/export.h declare nothing, and other headers
-# include the latter: they do not count. Nor do old names of renamed headers, which only include the new ones.
+# thimble/version.h, which CMake writes (driver/version.h.in), and thimble/driver/export.h, which other headers include: they
+# do not count. Nor do old names of renamed headers, which only include the new ones.
 count=$(grep -vxE 'thimble/(version|driver/export)\.h' "$work/headers" | xargs grep -L '^// Deprecated: former header' | wc -l)
 [ "$count" -lt "$most" ] || fail "$count headers are installed; there may be fewer than $most"
 
@@ -60,24 +60,41 @@ else
 fi
 [ ! -s "$work/bad" ] || fail "do not $alone: $(sort "$work/bad" | tr '\n' ' ')"
 
+# thimble/thimble.h includes every header that is not an old name, of the components that a program links.
+definitions=()
+for component in device_sim render scene session; do
+  definitions+=("-DTHIMBLE_HAS_${component^^}")
+done
+echo '#include "thimble/thimble.h"' | check -fsyntax-only "${definitions[@]}" -x c++ - || fail "thimble/thimble.h does not compile with all components"
+included() {  # DEFINITIONS...
+  echo '#include "thimble/thimble.h"' | "${CXX:-c++}" -std=c++20 -I. -isystem "$eigen" "$@" -M -x c++ - |
+    tr ' ' '\n' | grep -oE '(^|/)thimble/.*\.h$' | sed 's|^/||' | sort -u
+}
+xargs -a "$work/headers" grep -L '^// Deprecated: former header' | sort >"$work/current"
+included "${definitions[@]}" | sort | comm -13 - "$work/current" >"$work/missing"
+[ ! -s "$work/missing" ] || fail "thimble/thimble.h does not include $(tr '\n' ' ' <"$work/missing")"
+if included | grep -E '^thimble/(device_sim|render|scene|session)/'; then
+  fail "thimble/thimble.h includes the lines above in a program that links only the driver"
+fi
+
 # The reference is made from the same folders.
 while read -r header; do
   [ "$header" != thimble/version.h ] || continue
   module=$(cut -d/ -f2 <<<"$header")
   folder=$module/include
   [ -d "$source/$folder" ] || folder=app/$module/include
+  [ "$header" != thimble/thimble.h ] || folder=app/install/include
   grep -qF "@PROJECT_SOURCE_DIR@/$folder" "$source/app/guide/Doxyfile.in" ||
     fail "$header is installed, but the reference does not read $folder"
   [ -f "$source/$folder/$header" ] || fail "$header is installed, but does not come from $folder"
 done <"$work/headers"
 
-# Other makers' APIs: each header by itself, those without C++ in C as well.
+# Other makers' APIs: each header by itself, in C as well; two have only classes.
 others=0
 while read -r header; do
   others=$((others + 1))
   for language in c++ c; do
-    [ "$language" = c ] && grep -qE '^(template|class) ' <(cat "thimble/compat/$header") && continue
-    [ "$language" = c ] && grep -q 'HDU/hduVector' "thimble/compat/$header" && continue
+    [ "$language" = c ] && [[ $header =~ hdu(Matrix|Quaternion) ]] && continue
     echo "#include <$header>" | "${CC:-cc}" -fsyntax-only -Wall -Wextra -Werror -Ithimble/compat -x "$language" - ||
       fail "$header does not compile alone in $language"
   done

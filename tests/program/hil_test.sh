@@ -3,7 +3,7 @@
 source "$(dirname "$0")/expect.sh" "$@"
 
 expect 0 '' \
-  "$thimble" hil --device sim --arm vintage_phantom --spring 200 --known-length 0.1 --json good.json --junit good.xml
+  "$thimble" hil --device sim --arm vintage_phantom --spring 200 --known-length 0.1 --output good.json --junit good.xml
 expect 0 '^vintage_phantom quick True reports feel_check home_pose known_length constants watchdog friction_at_rest stiffest_wall force_accuracy soak cable_pull$' \
   /usr/bin/python3 -c '
 import json
@@ -55,7 +55,7 @@ expect 0 '^11 1 7 1$' /usr/bin/python3 summary.py bad.xml
 # Without an arm there is no result: the simulated arm is checked only on request, and an old file is removed.
 cp good.xml old.xml
 cp good.json old.json
-expect_words 3 '--device sim' "$thimble" hil --arm vintage_phantom --junit old.xml --json old.json
+expect_words 3 '--device sim' "$thimble" hil --arm vintage_phantom --junit old.xml --output old.json
 expect 0 '^11 0 11 0$' /usr/bin/python3 summary.py old.xml
 expect 0 '^no_arm 3 not_run$' /usr/bin/python3 -c '
 import json
@@ -65,7 +65,7 @@ expect 3 '--require-device' "$thimble" hil --device sim --arm vintage_phantom --
 expect_words 2 '--check reports' "$thimble" hil --device sim --arm vintage_phantom --check weight
 
 # One check, and those that it requires before it pushes.
-expect 0 '' "$thimble" hil --device sim --arm vintage_phantom --check reports --json one.json
+expect 0 '' "$thimble" hil --device sim --arm vintage_phantom --check reports --output one.json
 expect_json one.json '.checks#' == 1
 expect_json one.json '.checks[0].outcome' == passed
 expect 0 '' \
@@ -98,7 +98,7 @@ expect 0 '^1 0 0 0$' /usr/bin/python3 summary.py named.xml
 expect_words 3 'simulated' "$thimble" hil --device sim --arm touch
 expect_error 3 'falcon --arm vintage_phantom polhem woodenhaptics' "$thimble" hil --device sim --arm falcon
 expect_words 3 '--device sim' "$thimble" hil
-expect_words 2 '--json nowhere/x.json folder' "$thimble" hil --device sim --arm vintage_phantom --json nowhere/x.json
+expect_words 2 '--output nowhere/x.json folder' "$thimble" hil --device sim --arm vintage_phantom --output nowhere/x.json
 expect_words 2 '--suite quick full' "$thimble" hil --device sim --arm vintage_phantom --suite slow
 expect_words 2 '--spring' "$thimble" hil --device sim --arm vintage_phantom --spring 1
 finish

@@ -4,9 +4,9 @@ source "$(dirname "$0")/expect.sh" "$@"
 python=/usr/bin/python3
 at_terminal="$python $source_dir/tests/program/at_terminal.py"
 arm=$source_dir/app/arms/vintage_phantom.yaml
-brief="identify --device sim --arm vintage_phantom --seconds 10 --places 0"
+brief="identify --device sim --arm vintage_phantom --duration 10 --places 0"
 # The simulation of a motion of ten minutes takes much longer than a press of a key.
-endless="identify --device sim --arm vintage_phantom --seconds 600"
+endless="identify --device sim --arm vintage_phantom --duration 600"
 
 # Any key, and Ctrl-C, ends it while the tip moves, and the terminal is restored.
 expect 130 '' $at_terminal wait ' to stop' raw keys x -- "$thimble" $endless --output never.yaml
@@ -38,10 +38,10 @@ expect 0 'mass: ' cat vintage_phantom_identified.yaml
 # A joint with friction, whose cable is too stiff to be detected.
 sed 's/^simulation:/&\n  drive_train: {coulomb: [0, 0.03, 0], stiffness: [2000, 2000, 2000], inertia: [0.00001, 0.00001, 0.00001], damping: [0.01, 0.01, 0.01]}/' \
   "$arm" >sticky.yaml
-expect_words 5 'BAD FIT Joint 2' "$thimble" identify --device sim --arm sticky.yaml --seconds 10 --places 0
+expect_words 5 'BAD FIT Joint 2' "$thimble" identify --device sim --arm sticky.yaml --duration 10 --places 0
 # Amplifiers that saturate far below the value of the file, which is detected sooner.
 sed 's/current_max: 6 .*/current_max: 0.3/' "$arm" >weak.yaml
-bad="identify --device sim --arm weak.yaml --seconds 10 --places 0 --output bad.yaml"
+bad="identify --device sim --arm weak.yaml --duration 10 --places 0 --output bad.yaml"
 expect_words 5 'BAD FIT Motor 3' "$thimble" $bad
 expect 5 '' "$thimble" $bad --yes
 expect 1 '' test -e bad.yaml

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the build into a folder, builds the eight examples against it as another
+# Installs the build into a folder, builds the examples against it as another
 # project would, runs them, and checks the other installed files.
 #   install_test.sh BUILD_FOLDER EXAMPLES_FOLDER
 set -euo pipefail
@@ -19,7 +19,7 @@ cmake -S "$examples" -B "$work/examples" -G Ninja -DCMAKE_BUILD_TYPE=Debug \
   fail "$(cat "$work/log")"
 cmake --build "$work/examples" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
 cd "$work"
-for example in "$work"/examples/0?_*; do
+for example in "$work"/examples/[0-9][0-9]_*; do
   [ -x "$example" ] && [ -f "$example" ] || continue
   said=$("$example") || fail "$example: $said"
   echo "  $(basename "$example"): $(tail -n 1 <<<"$said")"
@@ -46,6 +46,10 @@ for page in README.md app/guide/pages/cpp.md; do
   grep -q '^Force ' said || fail "$page printed: $(cat said)"
   [ -s touch.h5 ] || fail "$page left no recording"
 done
+echo '#include "thimble/thimble.h"
+int main() { return thimble::scene::SceneBuilder("scene").build() ? 1 : 0; }' >umbrella.cpp
+"${CXX:-c++}" $(pkg-config --cflags thimble) -Wall -Wextra -Werror umbrella.cpp -o umbrella $(pkg-config --libs thimble) >log 2>&1 &&
+  ./umbrella || fail "thimble/thimble.h by pkg-config: $(cat log)"
 "$work/examples/09_run_a_scene" rubber third.h5 | diff said - | grep -v Replayed | grep '^[<>]' &&
   fail "by pkg-config another run"
 
@@ -65,8 +69,42 @@ int main() {
   char numbers[32];
   std::snprintf(numbers, sizeof numbers, "%d.%d.%d", THIMBLE_VERSION_MAJOR, THIMBLE_VERSION_MINOR, THIMBLE_VERSION_PATCH);
   std::puts(THIMBLE_VERSION);
+  if (thimble::version() != thimble::kVersion) return 1;
   return std::strcmp(numbers, THIMBLE_VERSION);
 }
+END
+# One header for all components, and for the driver alone.
+cat >consumer/all.cpp <<'END'
+#include "thimble/thimble.h"
+#include <cstdio>
+int main() {
+  thimble::scene::SceneBuilder scene("ball");
+  scene.arm("vintage_phantom").duration(0.5);
+  scene.object("ball").sphere(0.03).position({0, 0, -0.03}).stiffness(500);
+  scene.hand().at(0, {0, 0, 0.005}).at(0.5, {0, 0, -0.005});
+  auto run = thimble::session::Session::open(scene);
+  if (!run) return std::fprintf(stderr, "%s\n", run.error().message.c_str()), 1;
+  (*run)->run();
+  return (*run)->ticks().back().in_contact ? 0 : 1;
+}
+END
+mkdir driver_only
+cat >driver_only/driver.cpp <<'END'
+#include "thimble/thimble.h"
+#if defined(THIMBLE_HAS_RENDER) || defined(THIMBLE_HAS_SCENE) || defined(THIMBLE_HAS_SESSION)
+#error "a component that is not linked is defined"
+#endif
+int main() {
+  const thimble::driver::VirtualClock clock;
+  return thimble::version() == thimble::kVersion && clock.now_ns() >= 0 ? 0 : 1;
+}
+END
+cat >driver_only/CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(driver_only LANGUAGES CXX)
+find_package(thimble REQUIRED COMPONENTS driver)
+add_executable(driver driver.cpp)
+target_link_libraries(driver PRIVATE thimble::driver)
 END
 cat >consumer/CMakeLists.txt <<'END'
 cmake_minimum_required(VERSION 3.25)
@@ -76,12 +114,18 @@ add_executable(touch touch.cpp)
 target_link_libraries(touch PRIVATE thimble::session)
 add_executable(version version.cpp)
 target_link_libraries(version PRIVATE thimble::driver)
+add_executable(everything all.cpp)
+target_link_libraries(everything PRIVATE thimble::session)
 END
+cmake -S driver_only -B driver_only/build -G Ninja -DCMAKE_PREFIX_PATH="$work/usr" >log 2>&1 && cmake --build driver_only/build >log 2>&1 ||
+  fail "thimble/thimble.h with the driver alone: $(cat log)"
+driver_only/build/driver || fail "the version of the linked driver is not that of the headers"
 cmake -S consumer -B consumer/build -G Ninja -DCMAKE_PREFIX_PATH="$work/usr" >log 2>&1 && cmake --build consumer/build >log 2>&1 ||
   fail "$(cat log)"
 rm -f touch.h5
 env -i HOME="$work/nothing" PATH="$PATH" consumer/build/touch >said 2>&1 || fail "README.md by CMake: $(cat said)"
 grep -q '^Force ' said || fail "README.md by CMake printed: $(cat said)"
+env -i HOME="$work/nothing" PATH="$PATH" consumer/build/everything >log 2>&1 || fail "a program with thimble/thimble.h: $(cat log)"
 version=$(consumer/build/version) || fail "the numbers of thimble/version.h are not those of its text: $version"
 "$work/usr/bin/thimble" --version | grep -q "^thimble ${version//./\\.} " || fail "thimble/version.h says $version, the program $("$work/usr/bin/thimble" --version)"
 
@@ -115,6 +159,31 @@ vintage_phantom
 feel_check
 virtual paced wall
 button key" ] || fail "completion answered: $completed"
+# zsh and fish print the same words.
+export PATH=$work/usr/bin:$PATH
+if command -v fish >/dev/null; then
+  completed=$(fish -c "source $work/usr/share/fish/vendor_completions.d/thimble.fish
+    complete -C 'thimble run --dur'; complete -C 'thimble run box --clock '")
+  [ "$completed" = "--duration
+paced
+virtual
+wall" ] || fail "completion in fish answered: $completed"
+else
+  echo "NOT TESTED: completion in fish; install fish."
+fi
+if command -v zsh >/dev/null; then
+  completed=$(zsh -f -c 'fpath=($1 $fpath)
+    autoload -Uz _thimble
+    compadd() { print -l -- "${(@P)2}"; }
+    words=(thimble run --dur) CURRENT=3; _thimble
+    words=(thimble run box --clock "") CURRENT=5; _thimble' _ "$work/usr/share/zsh/vendor-completions")
+  [ "$completed" = "--duration
+virtual
+paced
+wall" ] || fail "completion in zsh answered: $completed"
+else
+  echo "NOT TESTED: completion in zsh; install zsh."
+fi
 if [ ! -d "$work/usr/lib/python3" ]; then
   echo "NOT TESTED: the Python package; it was not built."
 elif ! /usr/bin/python3 -c 'import numpy' 2>/dev/null; then

@@ -43,7 +43,8 @@ for clock in paced wall; do
     fi
     restarts
     restarts
-    expect 0 "^1$" grep -c "^thimble: .*$spoiled" out # reported once
+    # Reported once.
+    expect 0 "^1$" grep -c "^thimble: .*$spoiled" out
     cp good $spoiled
     restarts
     kill -INT $pid

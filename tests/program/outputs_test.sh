@@ -9,7 +9,7 @@ cp "$source_dir/app/arms/vintage_phantom.yaml" arm.yaml
 printf 'OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n' >mesh.off
 printf 't x y z\n0 0 0 0.03\n1 0 0 0.02\n' >probe.traj
 "$thimble" run scene.yaml --duration 0.05 --record in.h5 >/dev/null 2>&1 || { echo "FAILED: no recording" && exit 1; }
-"$thimble" identify --device sim --arm vintage_phantom --seconds 10 --places 0 --record free.h5 --output free.yaml >/dev/null 2>&1 ||
+"$thimble" identify --device sim --arm vintage_phantom --duration 10 --places 0 --record free.h5 --output free.yaml >/dev/null 2>&1 ||
   { echo "FAILED: no motion" && exit 1; }
 printf 'precious\n# a, b\nname: kept\n' >precious
 table=" "
@@ -99,25 +99,25 @@ file OUT .pages mesh.off mesh page mesh.off OUT
 file OUT .pages "" mesh generate OUT --triangles 5000
 file --repair .off mesh.off mesh mesh.off --repair OUT
 file --picture .png mesh.off mesh mesh.off --picture OUT
-file --json .json mesh.off mesh mesh.off --json OUT
-file --out .png scene.yaml shot scene.yaml --at 0.1 --size 64x64 --out OUT
+file --output .json mesh.off mesh mesh.off --output OUT
+file --output .png scene.yaml shot scene.yaml --at 0.1 --size 64x64 --output OUT
 file --animate .png scene.yaml shot scene.yaml --at 0.1 --until 0.2 --size 64x64 --animate OUT
-folder --out tune scene.yaml --out OUT
-folder --out bench scene.yaml --seconds 1 --out OUT
+folder --output tune scene.yaml --output OUT
+folder --output bench scene.yaml --duration 1 --output OUT
 plots --output twin free.h5 --arm vintage_phantom --output OUT
-plots --report identify --device sim --arm vintage_phantom --seconds 10 --output new.yaml --report OUT
-file --record .h5 arm.yaml identify --device sim --arm arm.yaml --seconds 10 --output new.yaml --record OUT
-file --output .yaml arm.yaml identify --device sim --arm arm.yaml --seconds 10 --output OUT
-file --json .json arm.yaml hil --device sim --arm arm.yaml --json OUT
+plots --report identify --device sim --arm vintage_phantom --duration 10 --output new.yaml --report OUT
+file --record .h5 arm.yaml identify --device sim --arm arm.yaml --duration 10 --output new.yaml --record OUT
+file --output .yaml arm.yaml identify --device sim --arm arm.yaml --duration 10 --output OUT
+file --output .json arm.yaml hil --device sim --arm arm.yaml --output OUT
 file --junit .xml arm.yaml hil --device sim --arm arm.yaml --junit OUT
 file --record .h5 "scene.yaml arm.yaml" exec --device sim --scene scene.yaml --arm arm.yaml --record OUT true
 file --trace .txt "" plug woodenhaptics --port 0 --trace OUT
-plots --out study friction --out OUT
-folder --out study gating scene.yaml --out OUT
-plots --out study accuracy --no-count --out OUT
+plots --output study friction --output OUT
+folder --output study gating scene.yaml --output OUT
+plots --output study accuracy --no-count --output OUT
 file --table .inc "" study accuracy --table OUT
-plots --out study stability --arm vintage_phantom --coarse --out OUT
-folder --out study trouble --arm vintage_phantom --count 10 --out OUT
+plots --output study stability --arm vintage_phantom --coarse --output OUT
+folder --output study trouble --arm vintage_phantom --count 10 --output OUT
 file --picture .png in.h5 view in.h5 --for 1 --picture OUT
 for log in scene.yaml precious in.h5 mesh.off; do
   refused $log "--log: $log|^thimble: $log: " "$thimble" "${run[@]}" --log $log
@@ -224,8 +224,11 @@ ls full
 "$1" run scene.yaml --duration 1 --report readonly/out; echo "readonly: $?"
 "$1" run scene.yaml --duration 1 --save-mesh readonly/out.off; echo "readonly mesh: $?"
 END
-if unshare -rm true 2>/dev/null; then
-  unshare -rm bash disks.sh "$thimble" >disks.txt 2>&1
+# Mounts of our own: by a user namespace, or by root where none exists (a changed root).
+own_mounts=(unshare -rm)
+"${own_mounts[@]}" true 2>/dev/null || own_mounts=(unshare -m --propagation unchanged)
+if "${own_mounts[@]}" true 2>/dev/null; then
+  "${own_mounts[@]}" bash disks.sh "$thimble" >disks.txt 2>&1
   if [ $? = 77 ]; then
     leave_out "full and read-only disks: no file system in memory may be mounted"
   else

@@ -57,6 +57,7 @@ thimble-viewer usr/share/man/man1/thimble-viewer.1.gz
 thimble-studies usr/libexec/thimble/thimble-studies
 thimble-studies usr/share/man/man1/thimble-studies.1.gz
 thimble-compat usr/lib/thimble/compat/libHD.so.3
+thimble-compat usr/lib/thimble/compat/libHL.so.3
 thimble-compat usr/lib/thimble/compat/libdhd.so.3
 thimble-mesh-formats usr/lib/thimble/thimble-mesh-formats.so
 thimble-bodies usr/lib/thimble/thimble-bodies.so
@@ -253,7 +254,7 @@ fi
 inside 'apt-get install -y -q --no-install-recommends ./root/libthimble-dev_*.deb g++ cmake make'
 inside 'cd /root && thimble run elephant --report out && ls out/index.html out/force_and_depth.png && ls ~/.cache/thimble/meshes/elephant.off'
 echo "  the README's first touch: $(grep -m 1 '^Contact' log || head -n 1 log)"
-inside 'cd /root && thimble shot water_balloon --out shot.png && head -c 4 shot.png | grep -q PNG'
+inside 'cd /root && thimble shot water_balloon --output shot.png && head -c 4 shot.png | grep -q PNG'
 
 echo "Running every command of the guide, as its first page says ..."
 enter=$(sed -n 's/^\(mkdir -p touch\/app .*\)$/\1/p' "$source/app/guide/pages/index.md")
@@ -279,7 +280,7 @@ fi
 sed -n '/^```cpp$/,/^```$/p' "$source/app/guide/pages/cpp.md" | sed '/^```/d' >"$bare/root/touch/guide.cpp"
 inside 'cd /root/touch && c++ $(pkg-config --cflags thimble) guide.cpp -o guide $(pkg-config --libs thimble) && ./guide'
 inside 'cmake -S /usr/share/doc/thimble/examples -B /root/built && cmake --build /root/built'
-inside 'cd /root && for example in built/0?_*; do
+inside 'cd /root && for example in built/[0-9][0-9]_*; do
           [ -x $example ] && [ -f $example ] || continue; $example || exit 1; done'
 echo "  the examples: $(tail -n 1 log)"
 inside 'apt-get purge -y -q thimble libthimble-dev $(dpkg-query -W -f "\${Package} " "thimble-*" python3-thimble 2>/dev/null) && ! ls /usr/share/thimble'

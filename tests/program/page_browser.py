@@ -52,8 +52,8 @@ class Tab:
             await asyncio.sleep(0.1)
         raise RuntimeError(f"never came true: {expression}")
 
-    async def picture(self, path, scale=1):
-        clip = {"x": 0, "y": 0, "width": 1280, "height": 960, "scale": scale}
+    async def picture(self, path, scale=1, size=(1280, 960)):
+        clip = {"x": 0, "y": 0, "width": size[0], "height": size[1], "scale": scale}
         shot = await self.call("Page.captureScreenshot", format="png", clip=clip)
         pathlib.Path(path).write_bytes(base64.b64decode(shot["data"]))
 

@@ -44,6 +44,13 @@ scene=water_balloon
 expect 0 '' "$thimble" run "$scenes/$scene.yaml" --duration 60 --report minute
 expect 0 '^[0-9]{6,7}$' stat -c %s minute/index.html
 
+# The gallery: a page and a thumbnail for each scene, each page below 3 MB; a scene that does not run is an error.
+expect_words 0 'scenes gallery/index.html' bash "$source_dir/app/guide/gallery.sh" "$thimble" gallery tin_can clay_tablet two_hands
+expect_links gallery/index.html 3
+expect 0 '^[12][0-9]{6}$' bash -c 'stat -c %s gallery/tin_can.html'
+expect 0 '' test -s gallery/tin_can.png
+expect_words 1 'gallery.sh nonesuch' bash "$source_dir/app/guide/gallery.sh" "$thimble" gallery nonesuch
+
 if ! command -v chromium >/dev/null || ! /usr/bin/python3 -c 'import websockets' 2>/dev/null; then
   leave_out "the page in a real browser" "chromium python3-websockets"
 fi
@@ -66,6 +73,8 @@ browse clay/index.html clay.h5 0.9003 1.8001 3.6008
 # A map of stiffness colours the surface, with its range.
 browse tissue/index.html tissue.h5 1.8002 2.6004 5.0003
 expect 0 'pad: stiffness.*250.*800 N/m' cat found.json
+# Layout and colours: all on one screen of a laptop, one time axis, a timeline on a phone, light and dark, readable values.
+expect 0 '^as it should be$' /usr/bin/python3 "$here/page_layout.py" "$(command -v chromium)" two/index.html layout
 # The appearance; after an intended change THIMBLE_WRITE_SHOTS=1 stores the new pictures.
 kept() {
   local stored=$source_dir/tests/data/shots/$1.png
@@ -96,6 +105,7 @@ expect_own 0 '^7500 ticks$' ticks
 serve "stands_$$"
 expect 0 '' /usr/bin/python3 "$here/live_page_browser.py" "$(command -v chromium)" "$address" live_small.png
 kept page_live live_small.png
+expect 0 '#theme=dark$' "$thimble" view "stands_$$" --web --theme dark --for 0.5
 expect 0 '' "$thimble" view "stands_$$" --stop
 wait "$run" "$viewer"
 

@@ -25,14 +25,14 @@ expect_json flat/report.json '.contact.trackers[0].tracker' == edge_planes
 expect 0 '^Gate .* 0\.00 mJ' "$thimble" run "$source_dir/app/scenes/elephant.yaml"
 expect 0 '^1$' bash -c '"$0" run "$1" | grep -c ^Energy' "$thimble" "$source_dir/app/scenes/elephant.yaml"
 expect 0 '^Energy .* 0\.00 mJ' "$thimble" run "$source_dir/app/scenes/elephant.yaml" --duration 0.05
-expect 0 'simulated [0-9]+ N/m' "$thimble" tune "$source_dir/app/scenes/elephant.yaml" --out tuned
+expect 0 'simulated [0-9]+ N/m' "$thimble" tune "$source_dir/app/scenes/elephant.yaml" --output tuned
 expect 0 '"elephant.margin"' cat tuned/figures.json
 sed 's/stiffness: 800/stiffness: 8000/' "$source_dir/app/scenes/elephant.yaml" >stiff.yaml
 expect_words 5 '8000 N/m stiffness' "$thimble" tune stiff.yaml
 expect_words 0 '8000 N/m tune' "$thimble" run stiff.yaml --duration 0.5
 # Too much damping: no stiffness is possible, so the damping must change.
 sed 's/damping: 1 .*/damping: 200/' "$source_dir/app/scenes/elephant.yaml" >damped.yaml
-expect_words 5 'damping 200 N s/m #' "$thimble" tune damped.yaml --out damped
+expect_words 5 'damping 200 N s/m #' "$thimble" tune damped.yaml --output damped
 expect 1 '' grep -iE 'nan|inf|null' damped/figures.json
 expect_words 0 'damping 200 N s/m' "$thimble" run damped.yaml --duration 0.5
 # The named damping is accepted.

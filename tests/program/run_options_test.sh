@@ -29,14 +29,17 @@ table='
 --reload        | same     | --reload                  | between two runs
 --no-reload     | same     | --no-reload               | between two runs
 --hand          | hand     |                           | who leads the hand: its path is in each tick
+--button-at     | hand     |                           | buttons of each tick
 --view          | hand     |                           | a viewer turns knobs and pauses: setting and gain
 --no-view       | same     | --no-view                 | without a viewer
 --loop          | same     |                           | each run has its own recording
 --sound         | same     |                           | what the window plays
 --rumble        | same     |                           | what the window plays
+--json          | same     | --json                    | the stream of the text
 --name          | same     | --name another            | of the run, for viewers
 --quality       | recorded | --quality draft           | options
 --budget        | recorded | --quality auto --budget 400 | options
+--theme         | same     |                           | of the window and the pictures
 --report        | same     | --report report           | after the run
 --record        | same     |                           | the recording itself
 --force         | same     | --force                   | an older recording of that name is replaced
@@ -57,6 +60,8 @@ table='
 --list          | same     |                           | no run
 --verbose       | same     | --verbose                 | texts
 --quiet         | same     | --quiet                   | texts
+--progress      | same     | --progress                | lines on standard error
+--no-progress   | same     | --no-progress             | no such lines
 --log           | same     | --log a.log               | texts
 '
 

@@ -4,32 +4,32 @@
 source "$(dirname "$0")/expect.sh" "$@"
 scene=$source_dir/app/scenes/water_balloon.yaml
 
-expect 2 '--out FILE.png' "$thimble" shot "$scene"
-expect 2 'WIDTHxHEIGHT' "$thimble" shot "$scene" --out a.png --size 10x10
-expect 2 'WIDTHxHEIGHT' "$thimble" shot "$scene" --out a.png --size 640
-expect_words 2 '--out .png a.jpg' "$thimble" shot "$scene" --out a.jpg
+expect 2 '--output FILE.png' "$thimble" shot "$scene"
+expect 2 'WIDTHxHEIGHT' "$thimble" shot "$scene" --output a.png --size 10x10
+expect 2 'WIDTHxHEIGHT' "$thimble" shot "$scene" --output a.png --size 640
+expect_words 2 '--output .png a.jpg' "$thimble" shot "$scene" --output a.jpg
 expect_words 2 '--animate .mp4 .gif .png a.jpg' "$thimble" shot "$scene" --animate a.jpg
-expect_words 2 '--at 6.5 scene water_balloon 6' "$thimble" shot "$scene" --at 6.5 --out a.png
+expect_words 2 '--at 6.5 scene water_balloon 6' "$thimble" shot "$scene" --at 6.5 --output a.png
 expect_words 2 '--until 7 scene water_balloon 6' "$thimble" shot "$scene" --at 1 --animate a.png --until 7
 expect_error 2 '--until 0.5 1 --at' "$thimble" shot "$scene" --at 1 --animate a.png --until 0.5
 expect_error 2 '--until 1 --at' "$thimble" shot "$scene" --at 1 --animate a.png --until 1
 expect_error 2 '--until 0 --at' "$thimble" shot "$scene" --animate a.png --until 0
 expect 1 '' test -e a.png
 for zoom in 0 -1 1e-9 1e9; do
-  expect_error 2 '--camera ZOOM 0.01 100' "$thimble" shot "$scene" --at 1 --camera 10 20 $zoom --out a.png
+  expect_error 2 '--camera ZOOM 0.01 100' "$thimble" shot "$scene" --at 1 --camera 10 20 $zoom --output a.png
 done
-expect 2 'no_such.yaml' "$thimble" shot no_such.yaml --out a.png
-if ! "$thimble" shot "$scene" --at 1 --size 160x120 --out probe.png >probe.txt 2>&1; then
+expect 2 'no_such.yaml' "$thimble" shot no_such.yaml --output a.png
+if ! "$thimble" shot "$scene" --at 1 --size 160x120 --output probe.png >probe.txt 2>&1; then
   if grep -q 'No OpenGL' probe.txt && [ -z "${CI:-}" ]; then
     echo "NOT TESTED: pictures. $(cat probe.txt)"
     exit 77
   fi
 fi
 expect 0 '' "$thimble" shot "$scene" --at 1 --size 160x120 --plots --edge-planes \
-  --shading gouraud --edges on --camera 40 20 --out a.png
+  --shading gouraud --edges on --camera 40 20 --output a.png
 expect 0 'PNG' head -c 4 a.png
 expect 0 '' "$thimble" shot "$scene" --at 1 --size 160x120 --plots --edge-planes \
-  --shading gouraud --edges on --camera 40 20 --out b.png
+  --shading gouraud --edges on --camera 40 20 --output b.png
 expect 0 '' cmp a.png b.png  # bit-identical
 expect 0 '' "$thimble" shot "$scene" --at 1 --until 1.2 --pace 10 --size 160x120 \
   --animate c.png
@@ -39,10 +39,18 @@ differ() { ! cmp -s "$1" "$2" && echo differ; }
 for moving in water_balloon floating_block sandpaper; do
   for at in 2.001 2.007; do
     expect 0 '' "$thimble" shot "$source_dir/app/scenes/$moving.yaml" --at $at --size 320x240 --no-caption \
-      --all-colours --out $moving-$at.png
+      --all-colours --output $moving-$at.png
   done
   expect 0 'differ' differ $moving-2.001.png $moving-2.007.png
 done
+# The shapes that collide are drawn, also of a scene that has none.
+if [ -e "$(dirname "$thimble")/thimble-bodies.so" ]; then
+  for option in '' --collision; do
+    expect 0 '' "$thimble" shot "$source_dir/app/scenes/cans.yaml" --at 1 --size 320x240 $option --output "cans$option.png"
+  done
+  expect 0 'differ' differ cans.png cans--collision.png
+fi
+expect 0 '' "$thimble" shot "$scene" --at 1 --size 160x120 --collision --output none.png
 # An animation has the requested length, to one unit of its file: the sum of the delays of its pictures.
 lasts() {
   python3 - "$1" <<'END'
@@ -106,7 +114,7 @@ if command -v ffmpeg >/dev/null; then
 else
   echo "NOT TESTED: MP4 and GIF, for want of ffmpeg."
 fi
-expect_words 2 'no/such/a.png folder' "$thimble" shot "$scene" --at 1 --size 160x120 --out no/such/a.png
+expect_words 2 'no/such/a.png folder' "$thimble" shot "$scene" --at 1 --size 160x120 --output no/such/a.png
 expect 1 'screen' env -u DISPLAY -u WAYLAND_DISPLAY "$thimble" view --for 1
 
 if command -v Xvfb >/dev/null; then

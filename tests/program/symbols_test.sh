@@ -33,7 +33,7 @@ look_at() {
   { grep -E "$ours" symbols || true; } | c++filt >demangled
   sed -E 's/^(vtable|typeinfo|typeinfo name|VTT|guard variable|(non-)?virtual thunk) (for|to) //; s/\[abi:[a-z0-9]+\]//g; s/\(anonymous namespace\)/hidden/g
           :again; s/<[^<>]*>//g; t again
-          s/\(.*//; s/^.* (thimble::)/\1/; s/.*::([^:]+)::~?/\1\t/' demangled |
+          s/\(.*//; s/^.* (thimble::)/\1/; s/^(.*::)?([^:]+)::~?/\2\t/' demangled |
     paste - demangled | awk -F'\t' '
       NR == FNR { known[$1] = 1; next }
       !($2 in known) && $2 !~ /^operator/ && !($1 ~ /^[A-Z]/ && $1 in known) { print $3 " is declared by no header" }' declared -

@@ -4,7 +4,7 @@ source "$(dirname "$0")/expect.sh" "$@"
 arm=$source_dir/app/arms/vintage_phantom.yaml
 
 expect_words 0 'free.h5' \
-  "$thimble" identify --device sim --arm vintage_phantom --seconds 10 --places 0 --record free.h5 --output same.yaml
+  "$thimble" identify --device sim --arm vintage_phantom --duration 10 --places 0 --record free.h5 --output same.yaml
 expect_words 0 'free.csv # identify 1000' "$thimble" export free.h5 --csv free.csv
 expect 0 '' \
   "$thimble" twin free.h5 --arm vintage_phantom --min-fit 95 --output same
@@ -48,6 +48,6 @@ expect 2 '--arm' "$thimble" twin free.h5
 head -c 20000 free.h5 >half.h5
 expect 2 'half\.h5' "$thimble" twin half.h5 --arm vintage_phantom
 expect_words 2 "$arm/x" "$thimble" twin free.h5 --arm vintage_phantom --output "$arm/x"
-expect_words 2 'nowhere' "$thimble" identify --device sim --arm vintage_phantom --seconds 10 --places 0 \
+expect_words 2 'nowhere' "$thimble" identify --device sim --arm vintage_phantom --duration 10 --places 0 \
   --record nowhere/free.h5 --output other.yaml
 finish

@@ -38,7 +38,7 @@ expect_error 2 '--recrod exec --record' "$thimble" exec --recrod a.h5 true
 # A wrong letter gets no suggestion, the beginning of a name does.
 expect_error 2 '-z run' "$thimble" run box -z
 expect_error 2 '-x5 run' "$thimble" run box -x5
-expect_error 2 '-o shot --out' "$thimble" shot box -o a.png
+expect_error 2 '-o shot --output' "$thimble" shot box -o a.png
 expect_error 2 'RUN run' "$thimble" RUN box
 expect_error 2 '--duration 2' "$thimble" run box --duration 1 --duration 2
 # An extra word for a command below `mesh` is not taken as the file of `mesh`.
@@ -81,7 +81,7 @@ expect_error 2 '--save-object --save-mesh' "$thimble" run box --save-object box
 expect_error 2 '--view --no-view' "$thimble" run box --view --no-view
 expect_error 2 'elefant elephant' "$thimble" run elefant
 expect_error 2 'vintage_fantom vintage_phantom' "$thimble" run box --arm vintage_fantom
-expect_error 2 '--axis velocty velocity' "$thimble" study accuracy --axis velocty --out out
+expect_error 2 '--axis velocty velocity' "$thimble" study accuracy --axis velocty --output out
 expect_error 2 'scene "stifness" stiffness' "$thimble" help scene stifness
 # A key with a new name.
 expect_error 2 '"grain" wavelength thimble help scene' "$thimble" help scene grain
@@ -108,10 +108,10 @@ expect 2 '^thimble: ' "$thimble" run no_such --quiet
 
 # A scene beyond the limits, and one that cannot be opened.
 sed "s/stiffness: .*/stiffness: 20000/; s#\.\./arms#$source_dir/app/arms#" "$source_dir/app/scenes/box.yaml" >stiff.yaml
-expect 5 '' "$thimble" tune stiff.yaml --out unmet
+expect 5 '' "$thimble" tune stiff.yaml --output unmet
 expect_json unmet/figures.json '[name=entry_face.margin].met' == false
 expect_words 5 'NOT MET entry_face.margin' "$thimble" tune stiff.yaml
-expect 0 '' "$thimble" tune "$source_dir/app/scenes/honey.yaml" --out tuned
+expect 0 '' "$thimble" tune "$source_dir/app/scenes/honey.yaml" --output tuned
 expect_json tuned/figures.json '[name=rest_oscillation].met' == true
 printf 'OFF\n0 0 0\n' >empty.off
 cat >broken.yaml <<END

@@ -35,6 +35,7 @@ def test_code_of_each_notebook_runs_and_shows_its_results(name, notebook, tmp_pa
     if name == "first_touch":
         assert "<svg" in shown[1]._repr_html_() and "ball: stiffness" in shown[3]._repr_html_()
         assert names["softer"].force.shape == names["touch"].force.shape
+        assert "largest difference" in shown[-3]._repr_html_() and all("<iframe" in one._repr_html_() for one in shown[-2:])
     else:
         assert 0.05 < names["curve"].jnd < 0.5 and len(names["session"].lines) == 84
 

@@ -370,3 +370,15 @@ def test_study_returns_its_figures(tmp_path):
     figures = thimble.study("box", out=tmp_path / "box")
     assert figures and all(figure.met for figure in figures)
     assert (tmp_path / "box/figures.json").is_file()
+
+
+@pytest.mark.parametrize("pybind11, numpy, refused", [
+    ("2.10.3", "1.24.2", False), ("2.10.3", "2.0.0", True), ("2.11.1", "2.1.0rc1", True), ("2.12.0", "2.0.0", False),
+    ("3.0.1", "2.3.0", False), ("", "1.26.4", False), ("", "2.0.0", True), ("2.12", "1.24.2", False),
+])
+def test_numpy_2_is_refused_by_a_module_for_numpy_1(pybind11, numpy, refused):
+    if not refused:
+        thimble._numpy_version.check(pybind11, numpy)
+        return
+    with pytest.raises(thimble.Error, match='Install "numpy<2", or build thimble with pybind11 2.12'):
+        thimble._numpy_version.check(pybind11, numpy)

@@ -236,3 +236,16 @@ def test_several_arms_are_stepped_together_and_recorded_each(tmp_path):
         thimble.Stepper("two_hands").step(hand=(0, 0, 0))
     with pytest.raises(thimble.Error, match="supports one arm"):
         thimble.run("two_hands", law=lambda tick: None)
+
+
+def test_held_buttons_are_in_the_ticks_until_they_are_released():
+    with thimble.Stepper("rubber", seconds=0.1) as stepper:
+        stepper.step()
+        stepper.hold_buttons(1, 3)
+        stepper.step()
+        assert stepper.tick.buttons == 5
+        stepper.hold_buttons()
+        stepper.step()
+        assert stepper.tick.buttons == 0
+        with pytest.raises(thimble.ArgumentError, match="from 1 to 16"):
+            stepper.hold_buttons(17)

@@ -116,9 +116,35 @@ TEST(ArmUrdf, ElbowOfALinkageAgreesWithTheDriver) {
   EXPECT_LT((T * Eigen::Vector3d(build.length_1, 0, 0) - elbow).norm(), 1e-8);
 }
 
+TEST(ArmUrdf, ElbowsOfAFiveBarAgreeWithTheDriver) {
+  for (const char* name : {"five_bar", "haply_2diy_1", "haply_2diy_2", "haply_2diy_3"}) {
+    SCOPED_TRACE(name);
+    const scene::ArmFile arm = scene::load_arm(name).value();
+    const auto joints = joints_of(arm_urdf(arm, "world"));
+    const std::string prefix = std::string(name) + "_";
+    ASSERT_EQ(joints.size(), 3u);  // the stand and one for each motor
+    const auto& build = std::get<driver::FiveBarArm>(arm.model.geometry);
+    const Eigen::Vector3d middle = arm.R_WB.transpose() * (arm.workspace.middle() - arm.p_WB);
+    for (const Eigen::Vector3d& away : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.01, -0.01, 0),
+                                        Eigen::Vector3d(-0.02, 0.01, 0)}) {
+      const auto q = build.inverse(middle + away);
+      ASSERT_TRUE(q);
+      const Eigen::Vector3d p_WT = arm.p_WB + arm.R_WB * (middle + away);
+      const std::map<std::string, double> angles{{"joint1", (*q)[0]}, {"joint2", (*q)[1]}};
+      // The distal bars close the loop from the ends of the cranks to the tip.
+      const Eigen::Vector3d elbow_1 =
+          place_of(prefix + "crank_1", joints, angles) * Eigen::Vector3d(build.crank_1, 0, 0);
+      const Eigen::Vector3d elbow_2 =
+          place_of(prefix + "crank_2", joints, angles) * Eigen::Vector3d(build.crank_2, 0, 0);
+      EXPECT_NEAR((elbow_1 - p_WT).norm(), build.distal_1, 1e-8);
+      EXPECT_NEAR((elbow_2 - p_WT).norm(), build.distal_2, 1e-8);
+    }
+  }
+}
+
 TEST(ArmUrdf, IsATreeWithOneRootForEveryShippedArm) {
-  for (const char* name :
-       {"vintage_phantom", "woodenhaptics", "polhem", "falcon", "touch", "omega3"}) {
+  for (const char* name : {"vintage_phantom", "woodenhaptics", "polhem", "falcon", "touch",
+                           "omega3", "five_bar", "hapkit"}) {
     SCOPED_TRACE(name);
     const std::string urdf = arm_urdf(scene::load_arm(name).value(), "map");
     std::map<std::string, int> parents;

@@ -106,6 +106,16 @@ run=$!
 wait "$run"
 expect_own 0 '^frame object_[a-z_]+ moved 0\.0*[1-9]' cat peer.log
 
+# Of several bodies that meet, each has its frame: dominoes, which fall one after the other.
+"$thimble" run dominoes --no-view --ros2 --ros-domain "$domain" --duration 4 --clock wall >dominoes.log 2>&1 &
+run=$!
+"$peer" "$domain" 5 0 >peer.log
+wait "$run"
+for i in $(seq 8); do
+  expect_own 0 "^frame object_domino_$i moved 0\.0*[1-9]" cat peer.log
+  expect_own 0 "^object domino_$i in object_domino_$i\$" cat peer.log
+done
+
 # Several arms: each under its name.
 "$thimble" run two_hands --no-view --ros2 --ros-domain "$domain" --duration 3 --clock wall >two.log 2>&1 &
 run=$!

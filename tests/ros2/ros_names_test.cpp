@@ -61,6 +61,12 @@ TEST(RosNames, ConvertAnyNameToAValidFrame) {
   EXPECT_EQ(frame_name_of(""), "_");
 }
 
+TEST(RosNames, EachObjectHasItsOwnFrame) {
+  EXPECT_EQ(object_frames({"can 1", "can-1", "ball", "can_1", "can_1_2"}),
+            (std::vector<std::string>{"object_can_1", "object_can_1_2", "object_ball",
+                                      "object_can_1_3", "object_can_1_2_2"}));
+}
+
 TEST(SteppedClock, WaitsForPermits) {
   std::atomic<bool> stop{false};
   SteppedClock clock(stop);

@@ -40,6 +40,18 @@ TEST(RosScene, TwoArmsOfOneKindHaveDifferentNames) {
   }
 }
 
+TEST(RosScene, AllBodiesThatMeetMove) {
+  auto session = session::Session::open("dominoes");
+  ASSERT_TRUE(session) << session.error().message;
+  const RosScene scene = ros_scene(**session, {}, 0);
+  ASSERT_EQ(scene.objects.size(), 9U);
+  EXPECT_FALSE(scene.objects[0].moves) << "the table";
+  for (std::size_t i = 1; i < scene.objects.size(); ++i) {
+    EXPECT_TRUE(scene.objects[i].moves) << i;
+    EXPECT_EQ(scene.objects[i].corners_B.size(), 36U) << i;
+  }
+}
+
 TEST(RosScene, OneArmKeepsTheNameOfItsFile) {
   auto session = session::Session::open("box");
   ASSERT_TRUE(session) << session.error().message;

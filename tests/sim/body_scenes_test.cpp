@@ -134,7 +134,8 @@ TEST(BodyKeys, ErrorsNameTheWrongKey) {
   EXPECT_TRUE(says(refusal(ball, "{snap: {radius: 0.002, depth: 0.001}}"), "finer mesh"));
   EXPECT_TRUE(says(refusal(ball, "{sticky: {}}"), "sticky"));
   EXPECT_TRUE(says(refusal(block, "{plastic: {}}"), "dent, plastic and snap need a mesh"));
-  EXPECT_TRUE(says(refusal("plane: {normal: [0, 0, 1]}", "{motion: {mass: 1}}"), "no volume"));
+  EXPECT_TRUE(says(refusal("plane: {normal: [0, 0, 1]}", "{motion: {mass: 1}}"),
+                   "a plane has no end and cannot move"));
   EXPECT_TRUE(
       says(refusal(ball + ", contact: {tracker: compact}", "{plastic: {}}"), "edge_planes"));
 }

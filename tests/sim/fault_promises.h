@@ -116,7 +116,8 @@ inline Promised promised(std::string_view fault, driver::ArmKind arm, Phase phas
   if (fault == "long in" && hid)
     return unheard;  // babble; a stream skips bytes that are no message
   // Its reports have numbers, so an old report is detected.
-  if (fault == "stale in" && arm == driver::ArmKind::kWoody) return unheard;
+  const bool numbered = arm == driver::ArmKind::kWoody || arm == driver::ArmKind::kDescribed;
+  if (fault == "stale in" && numbered) return unheard;
   // Its silence is detected a tick before the messages count as refused.
   const Promised unanswered{Promise::kOff, watchdog, Fault::kNoReports};
   if (answers && (fault == "stall out" || fault == "lost out")) return unanswered;

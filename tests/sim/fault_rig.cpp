@@ -11,15 +11,18 @@
 #include <tuple>
 #include <vector>
 
+#include "arm/wire_section.h"
 #include "arm_table.h"
 #include "arms/falcon/falcon_packet.h"
 #include "arms/hfab/hfab_models.h"
 #include "arms/hfab/hfab_report.h"
 #include "arms/woody/woody_report.h"
+#include "support/boards/described_board.h"
 #include "support/boards/line_arm.h"
 #include "support/scratch.h"
+#include "thimble/driver/device.h"
 #include "thimble/driver/wire_link.h"
-#include "thimble/scene/device_settings.h"
+#include "thimble/scene/arm_file.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/session/recording.h"
@@ -99,6 +102,15 @@ FaultRig::FaultRig(const TestedArm& tested, Phase phase, const device_sim::Wirin
   scene::Scene& scene = read_before.at(key);
   file_ = scene.arms.front().arm;
   file_.simulated.firmware.wiring = wiring;
+  if (tested.kind == driver::ArmKind::kDescribed) {
+    auto wire = scene::load_wire(std::filesystem::path(THIMBLE_SOURCE_DIR) /
+                                 "tests/data/wires/checked_serial.yaml");
+    if (!wire) {
+      ADD_FAILURE() << wire.error().message;
+      return;
+    }
+    file_.wire = *wire;
+  }
   file_.limits.soft_start = 0.05;  // the tests concern the time after the soft start
   auto objects = scene::SceneObjects::build(scene);
   if (!objects) {
@@ -132,6 +144,12 @@ void FaultRig::build_arm() {
     settings.firmware.line_model = file_.board_model;
     own_arm_ = std::make_unique<support::LineArm>(
         device_sim::SimulatedArm::make(serial(), settings, std::move(path)).value());
+  } else if (tested_.kind == driver::ArmKind::kDescribed) {
+    device_sim::SimulatedArmSettings settings = file_.simulated;
+    settings.firmware.protocol = tested_.kind;
+    settings.firmware.described = file_.wire;
+    own_arm_ = std::make_unique<support::DescribedBoard>(
+        device_sim::SimulatedArm::make(serial(), settings, std::move(path)).value(), file_.wire);
   } else if (file_.is<driver::LinkageArm>()) {
     own_arm_ = usb::HidArm::make(usb::kMbed14Board, usb::UsbDescription(),
                                  driver::model_as<driver::LinkageArm>(file_.model), file_.simulated,
@@ -161,6 +179,10 @@ support::BusWire::Way FaultRig::way() const {
       way.out = support::LineArm::kOut;
       way.framing = driver::hfab::kLineFraming;
       break;
+    case driver::ArmKind::kDescribed:
+      way.out = support::DescribedBoard::kOut;
+      way.framing = driver::Framing{.described = &file_.wire->report};
+      break;
     case driver::ArmKind::kWoody:
       way.report_size = driver::woody::kReportSize;
       break;
@@ -173,10 +195,11 @@ support::BusWire::Way FaultRig::way() const {
 driver::Result<void> FaultRig::open() {
   // A Falcon that lost its home by a fault is homed by its hand, which takes up to two seconds.
   const std::int64_t timeout_ns = falcon_ ? 4'000'000'000 : 1'000'000'000;
-  auto device = driver::Device::open(
-      std::make_unique<driver::WireLink>(std::make_unique<support::BusWire>(*cable_, clock_, way()),
-                                         driver::make_arm(tested_.kind, file_.model)),
-      scene::device_settings(file_, 1000), clock_.now_ns(), timeout_ns);
+  auto device =
+      driver::Device::open(std::make_unique<driver::WireLink>(
+                               std::make_unique<support::BusWire>(*cable_, clock_, way()),
+                               driver::make_arm(tested_.kind, file_.model, file_.wire.get())),
+                           scene::device_settings(file_, 1000), clock_.now_ns(), timeout_ns);
   if (!device) return device.error();
   device_ = std::move(device).value();
   return device_->activate();

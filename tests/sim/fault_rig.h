@@ -40,6 +40,7 @@ inline constexpr auto kTestedArms = std::to_array<TestedArm>({
     {"woodenhaptics_text", "woodenhaptics_teensy", driver::ArmKind::kHfabLine},
     {"polhem", "polhem", driver::ArmKind::kPolhem},
     {"falcon", "falcon", driver::ArmKind::kFalcon},
+    {"vintage_described", "vintage_phantom", driver::ArmKind::kDescribed},
 });
 
 /// Activity of the arm at the time of the fault.

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "hil/cable_pull.h"
 #include "hil/constants_check.h"
 #include "hil/edge_of_wall.h"
 #include "hil/wall_check.h"
@@ -79,6 +80,87 @@ TEST(Hil, PassesAnArmThatMatchesItsFile) {
     EXPECT_EQ(figure_value(wall.figures, "wall_over_twin"), 1);
     EXPECT_LE(figure_value(wall.figures, "max_force"), kHilForceMax);
     EXPECT_NEAR(figure_value(results.at("force_accuracy").figures, "force_ratio"), 1, 0.02);
+  }
+}
+
+/// Returns the stiffness K of the wall at which an oscillation neither grows nor decays, N/m: b + 4
+/// c / (pi v) = K L, with the speed v after the first turn of the tip [PHYSICS 1.4]. Until then,
+/// dry friction c and the spring take the energy of the kick: m v_0^2 / 2 = K A^2 / 2 + c A, and v
+/// = A sqrt(K / m). `law` is the same with the speed v_0 of the kick, and gives the latency L.
+/// Edges of one start differ by a tenth (wall_check.cpp).
+double edge_after_first_turn(const scene::ArmFile& file, double law) {
+  const auto& [m, b, c] = file.simulated.plant;
+  const double v_0 = EdgeSearch().speed;
+  const auto braked = [&, b = b, c = c](double v) { return b + 4 * c / (std::numbers::pi * v); };
+  const double L = braked(v_0) / law;
+  double K = law;
+  for (int round = 0; round < 50; ++round) {
+    const double A = (std::sqrt(c * c + K * m * v_0 * v_0) - c) / K;
+    K = braked(A * std::sqrt(K / m)) / L;
+  }
+  return K;
+}
+
+TEST(Hil, PushesAlongAnAxisOfTheArm) {
+  for (const char* name : {"hapkit", "five_bar"}) {
+    SCOPED_TRACE(name);
+    Bench bench(name);
+    const bool on_line = bench.file.motors() == 1;
+    const auto results = bench.results();
+    EXPECT_EQ(failed(results), "");
+    EXPECT_EQ(results.at("friction_at_rest").outcome,
+              on_line ? HilOutcome::kSkipped : HilOutcome::kPassed)
+        << results.at("friction_at_rest").text;
+    const HilResult& wall = results.at("stiffest_wall");
+    const double law = figure_value(wall.figures, "stiffest_wall_by_law");
+    EXPECT_NEAR(
+        figure_value(wall.figures, "stiffest_wall") / edge_after_first_turn(bench.file, law), 1,
+        0.1)
+        << wall.text;
+    EXPECT_EQ(results.at("watchdog").text.find("too close"), std::string::npos);
+    const auto& gains = results.at("constants").figures;
+    EXPECT_EQ(figure_value(gains, on_line ? "gain_2_difference" : "gain_3_difference"), -1);
+  }
+}
+
+TEST(Hil, CablePullPushesAlongAnAxisOfTheArm) {
+  struct Case {
+    const char* arm;
+    const char* words;
+    Eigen::Vector3d direction_W;
+  };
+  for (const Case& one :
+       {Case{"vintage_phantom", "N to your right.", {0, 1, 0}},
+        Case{"five_bar", "N to your right.", {0, 1, 0}}, Case{"hapkit", "N up.", {0, 0, 1}}}) {
+    SCOPED_TRACE(one.arm);
+    const scene::ArmFile file = scene::load_arm(one.arm).value();
+    const std::atomic<bool> never{false};
+    std::string prompts;
+    Eigen::Vector3d pushed(0, 0, 0);
+    const HilRig rig{.file = file,
+                     .open =
+                         [&](TipHold hold) {
+                           auto bench = open_simulated(file, {}, hold);
+                           if (bench) {
+                             (*bench)->watch([&](const driver::TickRecord& record) {
+                               pushed += Eigen::Vector3d(record.f_sent_W[0], record.f_sent_W[1],
+                                                         record.f_sent_W[2]);
+                             });
+                           }
+                           return bench;
+                         },
+                     .stop = never,
+                     .prompt =
+                         [&](const std::string& text) {
+                           prompts += text;
+                           return true;
+                         },
+                     .attended = true};
+    const HilResult result = check_cable_pull(rig, true);
+    EXPECT_EQ(result.outcome, HilOutcome::kFailed) << result.text;  // no person pulls the cable
+    EXPECT_NE(prompts.find(one.words), std::string::npos) << prompts;
+    EXPECT_GT(pushed.norm(), 0);
+    EXPECT_LT((pushed.normalized() - one.direction_W).norm(), 1e-9);
   }
 }
 

@@ -411,6 +411,37 @@ TEST(LiveControl, MouseHandTouchesTheScene) {
   EXPECT_LT(fastest, 1.5 * device_sim::Hand::kSpeedMax) << "an arm in a hand overshoots slightly";
 }
 
+TEST(LiveControl, KeysHoldButtonsOfTheArm) {
+  SessionOptions options;
+  options.share = true;
+  options.duration = 1;
+  const auto session = open(shipped("rubber"), options);
+  const auto reader = reader_of(*session);
+  const std::atomic<bool> never{false};
+  for (int tick = 0; tick < 100; ++tick) {
+    reader->hold_buttons(5);
+    session->step(never);
+  }
+  EXPECT_EQ(session->ticks().back().buttons, 5);
+  reader->hold_buttons(0);
+  session->step(never);
+  session->step(never);
+  EXPECT_EQ(session->ticks().back().buttons, 0);
+}
+
+TEST(LiveControl, ButtonsOfAViewerThatHangsAreReleased) {
+  SessionOptions options;
+  options.share = true;
+  options.duration = 1;
+  const auto session = open(shipped("rubber"), options);
+  const auto reader = reader_of(*session);
+  reader->hold_buttons(2);
+  session->run(std::atomic<bool>{false});
+  const auto& ticks = session->ticks();
+  EXPECT_EQ(ticks[100].buttons, 2);
+  EXPECT_EQ(ticks[200].buttons, 0);
+}
+
 TEST(LiveControl, KeepsTheHandWithinTheWorkspace) {
   SessionOptions options;
   options.share = true;

@@ -27,6 +27,7 @@ class UsbTouch : public testing::TestWithParam<usb::ShelfEntry> {
  protected:
   void SetUp() override {
     virtual_arm_.name = GetParam().name;
+    wall_.emplace(virtual_arm_.wall());
     auto arm = usb::make_usb_arm(virtual_arm_.name, {});
     ASSERT_TRUE(arm.ok());
     arm_ = std::move(*arm);
@@ -79,7 +80,7 @@ class UsbTouch : public testing::TestWithParam<usb::ShelfEntry> {
     clock_.sleep_until_ns(clock_.now_ns() + kTick_ns);
     const std::int64_t now_ns = clock_.now_ns();
     const driver::DeviceState& state = device_->read(now_ns, now_ns);
-    device_->write(wall_(state));
+    device_->write((*wall_)(state));
     force_ = device_->f_sent_W().norm();
     force_max_ = std::max(force_max_, force_);
   }
@@ -111,7 +112,7 @@ class UsbTouch : public testing::TestWithParam<usb::ShelfEntry> {
   std::optional<support::UsbHost> host_;
   driver::VirtualClock clock_;
   std::unique_ptr<driver::Device> device_;
-  usb_test::Wall wall_;
+  std::optional<usb_test::Wall> wall_;
   double force_ = 0, force_max_ = 0;
 };
 

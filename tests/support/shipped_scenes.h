@@ -14,7 +14,7 @@ inline std::filesystem::path scene_file(const std::string& name) {
 
 /// Returns the names of the shipped scenes whose bodies meet, sorted.
 inline std::vector<std::string> scenes_of_bodies() {
-  return {"blocks", "dominoes", "door", "drawer", "lever", "pendulum"};
+  return {"blocks", "cans", "dominoes", "door", "drawer", "lever", "pendulum"};
 }
 
 /// Returns the names of all other shipped scenes, sorted, except `two_hands`, which needs several

@@ -36,7 +36,7 @@ int verdict(bool pass, const std::string& what, const std::string& detail) {
 int check_kernel(const VirtualArm& arm) {
   const auto found = arm.find();
   if (!found) return verdict(false, arm.name + " in the kernel", found.error().message);
-  const auto made = device_sim::usb::make_usb_arm(arm.name, {});
+  const auto made = device_sim::usb::make_usb_arm(arm.board(), {});
   if (!made) return verdict(false, arm.name + " in the kernel", made.error().message);
   const device_sim::usb::UsbDescription& d = (*made)->description();
   char release[8];

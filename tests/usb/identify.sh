@@ -91,7 +91,7 @@ identify() { # ARM SEED
   if feel_check $arm "$options"; then
     echo "PASS $named of hidden constants passes its feel check"
     echo "hand off" >$control
-    as tester "exec thimble identify --no-real-time $options --known-mass $known --seconds $seconds \
+    as tester "exec thimble identify --no-real-time $options --known-mass $known --duration $seconds \
       --places 0 --record /tmp/motion.h5 --output /tmp/identified.yaml" <$keys >/tmp/identify.log 2>&1 &
     asking=$!
     press /tmp/identify.log 1 && prompted /tmp/identify.log 2 && hold_mass $arm

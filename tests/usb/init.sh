@@ -26,11 +26,15 @@ as() { su -s /bin/sh "$1" -c "$2"; }
 control=/tmp/control
 count=0
 
+# Arms with one or two motors are those of an arm file on the board of the Polhem.
+is_short() { [ $1 = five_bar ] || [ $1 = hapkit ]; }
+plugged_as() { is_short $1 && echo "polhem --arm /data/app/arms/$1.yaml" || echo $1; }
+
 plug() {  # plug ARM TRACE [OPTION...]
   rm -f $control
   plugs=$1 trace=$2
   shift 2
-  thimble plug "$plugs" --attach --control $control --trace "$trace" "$@" >/tmp/plug.log 2>&1 &
+  thimble plug $(plugged_as $plugs) --attach --control $control --trace "$trace" "$@" >/tmp/plug.log 2>&1 &
   plugged=$!
   for i in $(seq 200); do [ -p $control ] && break; usleep 10000; done
   chmod 666 $control
@@ -74,6 +78,62 @@ dhd_client_sphere xyz 0.025 0 0.180
 EOF
 }
 
+# Moves the hand along an axis of the base, in steps that no limit of speed notices.
+move() { # x|y FROM TO (mm from the start of the hand)
+  for mm in $(seq $2 $3); do
+    metres=$(printf '0.%03d' $mm)
+    [ $1 = x ] && echo "hand $metres 0 0" >$control || echo "hand 0 $metres 0" >$control
+    usleep 10000
+  done
+}
+# Waits until a new line of the board's trace fulfils a condition of awk. The last line may be incomplete.
+board_has() { # CONDITION
+  for i in $(seq 100); do
+    tail -n 2 /tmp/touch.trace | head -n 1 | awk "NF == 22 && ($1) { found = 1 } END { exit !found }" && return 0
+    usleep 100000
+  done
+  return 1
+}
+# The program touches a scene with an arm of one or two motors. The line is pulled in contact: the force ends, and
+# the fault is named. No force returns when the arm is plugged in again.
+pull_in_scene() { # ARM SCENE AXIS FREE PRESSED (mm)
+  arm=$1
+  plug $arm /tmp/touch.trace --hand rest
+  name=$(usb_check name $arm)
+  move $3 0 $4
+  as tester "cd /tmp && HOME=/tmp exec thimble run $2 --arm /data/app/arms/$arm.yaml --device $name --yes --homed \
+    --no-real-time --duration 3 --record touch.h5" </dev/null >/tmp/run.log 2>&1 &
+  running=$!
+  board_has '$10 > 100' || echo "FAIL $arm in a scene: no messages: $(tr '\n' ' ' </tmp/run.log)"
+  move $3 $(($4 + 1)) $5
+  board_has '$14 != 0' || echo "FAIL $arm in a scene: no force: $(tr '\n' ' ' </tmp/run.log)"
+  echo "unplug for=300" >$control
+  wait $running
+  unplug
+  as tester "cd /tmp && thimble export touch.h5 --csv touch.csv" >/tmp/export.log 2>&1 || cat /tmp/export.log
+  # This awk has no square root, so a force is the largest of its components.
+  awk -F, -v arm=$arm -v named="$(grep -c 'disconnected' /tmp/run.log)" '
+    function size(f) { return f < 0 ? -f : f }
+    NR == 1 { for (i = 1; i <= NF; i++) column[$i] = i; next }
+    {
+      force = 0
+      for (axis = 0; axis < 3; axis++) {
+        one = size($column["f_sent_W." substr("xyz", axis + 1, 1) " [N]"])
+        if (one > force) force = one
+      }
+      if ($column["fault"] != 0) faulty++
+      if (!faulty && $column["in_contact"] == 1 && force > 0.1) touched++
+      if (faulty && force > left) left = force
+    }
+    END {
+      good = touched > 20 && faulty > 100 && left == 0 && named > 0
+      printf "%s %s pulled in a scene: %d ticks of touch, then %d ticks with a fault and at most %g N, " \
+             "\"disconnected\" in %d lines\n", good ? "PASS" : "FAIL", arm, touched, faulty, left, named
+    }' /tmp/touch.csv || echo "FAIL $arm in a scene: no recording of it: $(tr '\n' ' ' </tmp/run.log)"
+  grep -q disconnected /tmp/run.log || echo "NOTE $arm: $(tr '\n' ' ' </tmp/run.log)"
+  rm -f /tmp/touch.*
+}
+
 # The limits of a real arm come from an installed arm file: here in the tester's folder.
 mkdir -p /tmp/.config/thimble
 # The pose in which a program opens an arm is taken for its home pose, and the hand moves about 0.2 m above the middle of the
@@ -113,15 +173,19 @@ for arm in $arms; do
   usb_check compare $arm /tmp/driver.trace /tmp/device.trace
 
   # The program itself, with the listed name; then another program after it.
+  [ $arm != five_bar ] || pull_in_scene five_bar /data/app/scenes/disc.yaml y 16 28
+  [ $arm != hapkit ] || pull_in_scene hapkit /data/tests/data/scenes/stop_on_a_line.yaml x 0 16
   plug $arm /tmp/run.trace
   name=$(usb_check name $arm)
-  program="thimble run /data/tests/data/scenes/two_boxes.yaml --arm /data/app/arms/${arm%-64}.yaml"
-  [ -z "$image" ] || program="$program --firmware $image"
-  if as tester "thimble devices && HOME=/tmp $program --device $name --yes --homed --no-real-time --duration 0.5" \
-    >/tmp/run.log 2>&1 && grep -qE "^$name .*(ready|unknown kind)" /tmp/run.log; then
-    echo "PASS $arm as $name with thimble devices and thimble run"
-  else
-    echo "FAIL $arm as $name with thimble devices and thimble run: $(tr '\n' ' ' </tmp/run.log)"
+  if ! is_short $arm; then
+    program="thimble run /data/tests/data/scenes/two_boxes.yaml --arm /data/app/arms/${arm%-64}.yaml"
+    [ -z "$image" ] || program="$program --firmware $image"
+    if as tester "thimble devices && HOME=/tmp $program --device $name --yes --homed --no-real-time --duration 0.5" \
+      >/tmp/run.log 2>&1 && grep -qE "^$name .*(ready|unknown kind)" /tmp/run.log; then
+      echo "PASS $arm as $name with thimble devices and thimble run"
+    else
+      echo "FAIL $arm as $name with thimble devices and thimble run: $(tr '\n' ' ' </tmp/run.log)"
+    fi
   fi
   usleep 300000
   as tester "usb_check fresh $arm $image"

@@ -93,6 +93,7 @@ Numbers values_for(const driver::Arm& arm, const Tick& tick) {
   Numbers values{};
   for (std::size_t i = 0; i < 3; ++i) {
     const driver::MotorDrive& drive = arm.drives()[i];
+    if (drive.sign == 0) continue;  // no such motor
     values[i] = 1000 * tau[static_cast<Eigen::Index>(i)] /
                 (drive.sign * drive.ratio * drive.torque_constant);
   }
@@ -310,7 +311,9 @@ int compare_traces(const VirtualArm& arm, const std::string& driver_trace,
   std::printf("FIGURE %s.delay_median %.3f ms\n", arm.name.c_str(), part(0.5));
   std::printf("FIGURE %s.delay_99 %.3f ms\n", arm.name.c_str(), part(0.99));
   std::printf("FIGURE %s.delay_1 %.3f ms\n", arm.name.c_str(), part(0.01));
-  return bad + say(100 * early <= delays.size() && part(0.5) >= 1, arm.name + " delay",
+  // A response in the next frame takes a frame of 1 ms, less the difference of the places of both
+  // packets in their frames, which bulk transfers may have [chosen: at most a tenth of a frame].
+  return bad + say(100 * early <= delays.size() && part(0.5) >= 0.9, arm.name + " delay",
                    "from encoder to force " + std::to_string(part(0.5)) + " ms, 99 in 100 " +
                        std::to_string(part(0.99)) + " at most; " + std::to_string(early) + " of " +
                        std::to_string(delays.size()) + " answered in their own frame");

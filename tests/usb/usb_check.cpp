@@ -138,7 +138,7 @@ int touch(const VirtualArm& arm, std::uint64_t ticks, const std::string& trace) 
     verdict((*bench)->found.accessible, arm.name + " opened by a normal user",
             (*bench)->found.node);
     if (!(*bench)->device->activate()) return verdict(false, arm.name + " activated", "no");
-    Wall wall;
+    Wall wall = arm.wall();
     const std::atomic<bool> stop{false};
     heap_calls = support::heap_calls_of([&] {
       end = driver::run_servo(*(*bench)->device, (*bench)->clock, driver::ForceLaw(wall),
@@ -176,7 +176,8 @@ void order(const std::string& pipe, const std::string& line) {
 /// Runs single ticks, so that a check can examine each one and continue after a fault.
 class Ticker {
  public:
-  explicit Ticker(Bench& bench) : bench_(bench), due_ns_(bench.clock.now_ns()) {}
+  Ticker(Bench& bench, const VirtualArm& arm)
+      : bench_(bench), wall_(arm.wall()), due_ns_(bench.clock.now_ns()) {}
 
   void tick() {
     due_ns_ = std::max(due_ns_ + kTick_ns, bench_.clock.now_ns());
@@ -216,7 +217,7 @@ int hang(const VirtualArm& arm) {
   auto bench = open_bench(arm);
   if (!bench) return verdict(false, arm.name + " opened", bench.error().message);
   if (!(*bench)->device->activate()) return 1;
-  Ticker ticker(**bench);
+  Ticker ticker(**bench, arm);
   bool reported = false;
   for (;;) {
     ticker.tick();
@@ -232,7 +233,7 @@ int replug(const VirtualArm& arm, const std::string& pipe) {
   if (!opened) return verdict(false, arm.name + " opened", opened.error().message);
   Bench& bench = **opened;
   if (!bench.device->activate()) return verdict(false, arm.name + " activated", "no");
-  Ticker ticker(bench);
+  Ticker ticker(bench, arm);
   const bool contact = ticker.until([&] { return ticker.force > 0.5; }, 3000);
   int bad = verdict(contact, arm.name + " in contact", std::to_string(ticker.force) + " N");
   order(pipe, "unplug for=300");
@@ -309,7 +310,7 @@ int fault(const VirtualArm& arm, const std::string& pipe, const std::string& lin
   if (!opened) return verdict(false, arm.name + " opened", opened.error().message);
   Bench& bench = **opened;
   if (!bench.device->activate()) return verdict(false, arm.name + " activated", "no");
-  Ticker ticker(bench);
+  Ticker ticker(bench, arm);
   if (!ticker.until([&] { return ticker.force > 0.5; }, 3000)) {
     return verdict(false, arm.name + " in contact", "never");
   }

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <thread>
 
+#include "arm_table.h"
 #include "arms/falcon/falcon_arm.h"
 #include "arms/falcon/falcon_boot.h"
 #include "arms/falcon/falcon_packet.h"
@@ -10,6 +11,7 @@
 #include "arms/hfab/hfab_wire.h"
 #include "arms/woody/woody_wire.h"
 #include "thimble/driver/transports.h"
+#include "thimble/scene/arm_file.h"
 #include "transports/ftdi_line.h"
 
 namespace thimble::usb_test {
@@ -33,13 +35,17 @@ std::unique_ptr<const driver::Arm> VirtualArm::protocol() const {
   if (name == "woodenhaptics") {
     return std::make_unique<driver::woody::WoodyArm>(driver::hfab::woody_model());
   }
+  if (is_short()) {
+    const auto file = scene::load_arm("/data/app/arms/" + name + ".yaml");
+    return file ? driver::make_arm(file->protocol, file->model) : nullptr;
+  }
   return std::make_unique<driver::WireArm<driver::hfab::ReportWire, driver::LinkageArm>>(
       driver::hfab::polhem_model());
 }
 
 std::size_t VirtualArm::message_size() const {
   if (is_falcon()) return 0;
-  return name == "woodenhaptics" ? 8 : name == "polhem" ? 14 : 64;
+  return name == "woodenhaptics" ? 8 : board() == "polhem" ? 14 : 64;
 }
 
 std::string VirtualArm::serial() const {

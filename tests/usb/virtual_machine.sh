@@ -98,6 +98,8 @@ echo 'passwd: files' >"$root/etc/nsswitch.conf"
 mkdir -p "$root/data/app" "$root/data/tests/data"
 cp -r "$source/app/arms" "$root/data/app/"
 cp -r "$source/tests/data/scenes" "$source/tests/data/meshes" "$root/data/tests/data/"
+mkdir -p "$root/data/app/scenes"
+cp "$source/app/scenes/disc.yaml" "$root/data/app/scenes/"
 # Any bytes: the simulated Falcon runs any firmware.
 head -c 1500 /bin/sh >"$root/etc/falcon.bin"
 # Not compressed: unpacking would take 6 s of the machine's time.
@@ -126,9 +128,9 @@ boot() { # NAME SHIFT LIMIT_S SETTING...
 }
 
 # The short form omits the Polhem, whose reports are as long on its other board, and takes a fifth of the ticks.
-ticks=2000 faulty=woodenhaptics arms=woodenhaptics,polhem-64,falcon limit=2400 identified=
+ticks=2000 faulty=woodenhaptics arms=woodenhaptics,polhem-64,falcon,five_bar,hapkit limit=2400 identified=
 if [ -n "$long" ]; then
-  ticks=10000 arms=woodenhaptics,polhem,polhem-64,falcon limit=3000 identified=woodenhaptics,polhem,falcon,woodenhaptics_cables
+  ticks=10000 arms=woodenhaptics,polhem,polhem-64,falcon,five_bar,hapkit limit=3000 identified=woodenhaptics,polhem,falcon,woodenhaptics_cables
   faulty=$arms
 else
   gadgets=${gadgets%%,*}

@@ -30,11 +30,12 @@ Seen shown(const Wanted& x, double added, const Eigen::Vector3d& down_B, Slope& 
 }
 
 ArmConstants constants_of(const Wanted& x, const Eigen::Matrix<double, kWanted, kWanted>& cov,
-                          const Eigen::Vector3d& down_B) {
+                          const Eigen::Vector3d& down_B, int motors) {
   const auto estimate = [&](int i) { return Estimate{x[i], kNormal95 * std::sqrt(cov(i, i))}; };
   ArmConstants found;
   found.mass = estimate(0);
-  for (int i = 0; i < 3; ++i) found.gain[static_cast<std::size_t>(i)] = estimate(1 + i);
+  found.gain.fill({1, 0});  // of motors that the arm does not have
+  for (int i = 0; i < motors; ++i) found.gain[static_cast<std::size_t>(i)] = estimate(1 + i);
   found.viscous = estimate(4);
   found.coulomb = estimate(5);
   const Eigen::Matrix3d weight = cov.bottomRightCorner<3, 3>();
@@ -46,16 +47,16 @@ ArmConstants constants_of(const Wanted& x, const Eigen::Matrix<double, kWanted, 
 ArmConstants by_declared_torque(const MassNormalisedFit& bare, const Eigen::Vector3d& down_B) {
   const Seen z = bare.theta.head<kSeen>();
   double log_gain = 0;
-  for (int i = 0; i < 3; ++i) log_gain += math::log(std::abs(z[i])) / 3;
+  for (int i = 0; i < bare.motors; ++i) log_gain += math::log(std::abs(z[i])) / bare.motors;
   Wanted x;
   x[0] = math::exp(-log_gain);
   x.tail<kSeen>() = x[0] * z;
   Eigen::Matrix<double, kWanted, kSeen> slope = Eigen::Matrix<double, kWanted, kSeen>::Zero();
-  for (int i = 0; i < 3; ++i) slope(0, i) = -x[0] / (3 * z[i]);
+  for (int i = 0; i < bare.motors; ++i) slope(0, i) = -x[0] / (bare.motors * z[i]);
   slope.bottomRows<kSeen>() = z * slope.row(0);
   slope.bottomRows<kSeen>() += x[0] * Eigen::Matrix<double, kSeen, kSeen>::Identity();
   return constants_of(x, slope * bare.covariance.topLeftCorner<kSeen, kSeen>() * slope.transpose(),
-                      down_B);
+                      down_B, bare.motors);
 }
 
 }  // namespace
@@ -73,7 +74,7 @@ driver::Result<ArmConstants> arm_constants(const MassNormalisedFit& bare,
                                            const Eigen::Vector3d& down_B,
                                            const std::optional<MassNormalisedFit>& loaded,
                                            double added_mass) {
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < bare.motors; ++i) {
     if (bare.theta[i] > 0) continue;
     return driver::Error{"Joint " + std::to_string(i + 1) +
                          " does not follow its motor: something else moved it, such as a hand. Let "
@@ -84,7 +85,7 @@ driver::Result<ArmConstants> arm_constants(const MassNormalisedFit& bare,
   if (!loaded) return found;
   Wanted x;
   double ratio = 0;  // of accelerations, bare over loaded
-  for (int i = 0; i < 3; ++i) ratio += bare.theta[i] / loaded->theta[i] / 3;
+  for (int i = 0; i < bare.motors; ++i) ratio += bare.theta[i] / loaded->theta[i] / bare.motors;
   if (!(ratio > 1.02)) {
     return driver::Error{
         "The known mass did not slow the tip down. Fix it to the tip, or use a heavier one (about "
@@ -101,7 +102,12 @@ driver::Result<ArmConstants> arm_constants(const MassNormalisedFit& bare,
     const auto add = [&](const MassNormalisedFit& fit, double added) {
       Slope slope;
       const Seen rest = fit.theta.head<kSeen>() - shown(x, added, down_B, slope);
-      const auto weight = fit.covariance.topLeftCorner<kSeen, kSeen>().ldlt();
+      Eigen::Matrix<double, kSeen, kSeen> covariance = fit.covariance.topLeftCorner<kSeen, kSeen>();
+      // What the arm does not have was not fitted: it is 0 on both sides, with any weight.
+      for (int k = 0; k < kSeen; ++k) {
+        if (covariance(k, k) == 0) covariance(k, k) = 1;
+      }
+      const auto weight = covariance.ldlt();
       normal += slope.transpose() * weight.solve(slope);
       const Seen weighed = weight.solve(rest);
       right += slope.transpose() * weighed;
@@ -114,7 +120,7 @@ driver::Result<ArmConstants> arm_constants(const MassNormalisedFit& bare,
   if (!(x[0] > 0)) return driver::Error{"The two motions do not fit an arm with positive mass."};
   const Eigen::Matrix<double, kWanted, kWanted> cov =
       normal.ldlt().solve(Eigen::Matrix<double, kWanted, kWanted>::Identity());
-  found = constants_of(x, cov, down_B);
+  found = constants_of(x, cov, down_B, bare.motors);
   found.absolute = true;
   found.misfit = square / (2 * kSeen - kWanted);
   // Both measured the same delay.

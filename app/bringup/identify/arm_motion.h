@@ -22,9 +22,13 @@ struct MotionSample {
 
 /// A recorded motion of an arm under known torques, tick by tick.
 struct ArmMotion {
-  double dt = 0.001;                 ///< s between ticks
-  double added_mass = 0;             ///< Mass that the user fixed to the tip, kg.
-  Eigen::Vector3d down_B{0, 0, -1};  ///< Downward direction of the world in the base.
+  double dt = 0.001;  ///< s between ticks
+  /// Number of motors. Those of an arm with fewer than three move the tip along as many axes of the
+  /// base; the other joints and axes are at rest and have no torque.
+  int motors = 3;
+  double added_mass = 0;  ///< Mass that the user fixed to the tip, kg.
+  /// Downward direction of the world in the base; the part along axes on which the tip can move.
+  Eigen::Vector3d down_B{0, 0, -1};
   Eigen::Vector3d share{1, 1, 1};  ///< Share of the requested torque that was sent, joint by joint.
   Eigen::Vector3d step{0, 0, 0};   ///< Encoder step, rad at the joints.
   /// Known constants of links (LinkEquations) over the mass at the tip, m^2 and m; zero: none. The

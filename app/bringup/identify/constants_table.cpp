@@ -85,13 +85,14 @@ void add_joints(const Identified& identified, const scene::ArmFile& file, Rows& 
 
 void add_encoders(const Encoders& found, const scene::ArmFile& file, Rows& rows) {
   constexpr double kMicro = 1e6;
-  for (std::size_t i = 0; i < 3; ++i) {
+  const auto motors = static_cast<std::size_t>(file.motors());
+  for (std::size_t i = 0; i < motors; ++i) {
     if (found.step[i].counts == 0) continue;
     const double step = file.model.step(i);
     rows.add(fmt::format("step of encoder {}", i + 1), {found.step[i].counts * step, 0}, kMicro,
              "urad at the joint", step);
   }
-  for (std::size_t i = 0; found.rest && i < 3; ++i) {
+  for (std::size_t i = 0; found.rest && i < motors; ++i) {
     if (!found.rest->at_rest[i]) continue;
     const Estimate& noise = found.rest->noise[i];
     rows.add(fmt::format("noise of encoder {}, RMS", i + 1), noise, kMicro * file.model.step(i),
@@ -210,7 +211,8 @@ std::vector<ConstantRow> constant_rows(const Identified& identified, const scene
   if (!identified.rubbing.seen) add_friction(identified.friction, rows);
   add_joints(identified, file, rows);
   rows.add("weight", found.weight, 1e3, "mN", named(simulated.weight_B.norm()));
-  for (std::size_t i = 0; i < 3; ++i) {
+  const auto motors = static_cast<std::size_t>(file.motors());
+  for (std::size_t i = 0; i < motors; ++i) {
     rows.add(fmt::format("gain of motor {}", i + 1), found.gain[i], 1,
              "of the arm file's torque constant", 1.0);
   }

@@ -23,6 +23,7 @@ Estimate force_of(double per_mass, double variance, const Estimate& mass) {
 
 FrictionDirections friction_directions(const FittedMotion& motion, const Estimate& mass) {
   FrictionDirections found;
+  if (motion.motion().motors < 3) return found;  // the comparison needs three axes
   const auto& equations = motion.equations.equations();
   const double coulomb = motion.fit.theta[MassNormalisedFit::kCoulomb];
   // Each axis has its own friction instead of the common one.

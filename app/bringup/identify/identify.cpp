@@ -13,6 +13,8 @@
 #include "bringup/identify/link_inertia/link_constants.h"
 #include "bringup/identify/link_inertia/link_equations.h"
 #include "bringup/identify/record_motion.h"
+#include "bringup/push_direction.h"
+#include "log/progress.h"
 #include "math/elementary.h"
 
 namespace thimble::bringup {
@@ -26,6 +28,9 @@ constexpr double kMethodViscous = 0.006;   // N s/m for each N of Coulomb fricti
 constexpr double kMethodGain = 0.0002;     // of a gain
 constexpr double kMethodDelay = 2e-6;      // s
 constexpr double kPlaceLead = 0.5;         // s, motion about a pose before it is recorded
+// For the progress: way to a pose, s, ticks per second of a BenchArm, and the share of the time
+// that is motion, of a real arm [chosen: fits take seconds].
+constexpr double kWayToPlace = 2, kTicksPerSecond = 1000, kMotionShare = 0.95;
 // Max. half-width of an interval over the value, of mass and gains; less precise constants are not
 // written.
 constexpr double kUnknownMax = 0.03;
@@ -53,7 +58,7 @@ void look_at_intervals(Identified& found) {
   if (widest < kUnknownMax) return;
   found.against.push_back(fmt::format(
       "The tip moved too little compared with its dry friction; masses and forces are known only "
-      "to {:.0f} %. Record for longer (--seconds), or use a heavier known mass.",
+      "to {:.0f} %. Record for longer (--duration), or use a heavier known mass.",
       100 * widest));
 }
 
@@ -184,19 +189,20 @@ void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstant
   // An arm whose motion is not understood gets no further force. Behind an elastic cable the
   // oscillation of the link hides the end of the force.
   if (!found.against.empty() || found.lines.stretches) return;
-  // Effect of these motors for a force along y.
+  // Effect of these motors for a force along the direction of the push.
   const Eigen::Matrix3d J_T = found.moved.samples.back().G.inverse().transpose();
-  const Eigen::Vector3d y_B = file.R_WB.transpose() * Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d direction_W = push_direction(file);
+  const Eigen::Vector3d push_B = file.R_WB.transpose() * direction_W;
   const Eigen::Matrix3d masses =
       Eigen::Matrix3d::Identity() + links_at_tip(found.moved.links, found.moved.samples.back());
-  const double yields = y_B.dot(masses.inverse() * y_B);
-  Eigen::Vector3d tau = J_T * y_B;
+  const double yields = push_B.dot(masses.inverse() * push_B);
+  Eigen::Vector3d tau = J_T * push_B;
   for (std::size_t i = 0; i < 3; ++i) tau[static_cast<Eigen::Index>(i)] *= bare.gain[i].value;
-  const double share = y_B.dot(J_T.inverse() * tau);
+  const double share = push_B.dot(J_T.inverse() * tau);
   if (!(share > 0.2)) return;
-  // Friction of the joints along y.
+  // Friction of the joints along it.
   double rubs = 0;
-  const Eigen::Vector3d turned = found.moved.samples.back().G * y_B;
+  const Eigen::Vector3d turned = found.moved.samples.back().G * push_B;
   for (std::size_t i = 0; found.rubbing.seen && i < 3; ++i) {
     rubs += std::abs(turned[static_cast<Eigen::Index>(i)]) *
             by_gain(found.rubbing.coulomb[i], bare.gain[i]).value;
@@ -207,7 +213,8 @@ void look_at_link(BenchArm& bench, const scene::ArmFile& file, const ArmConstant
                                   .coulomb = (bare.coulomb.value + rubs) / share,
                                   .delay = bare.delay.value,
                                   .workspace = file.workspace,
-                                  .max_force = max_force},
+                                  .max_force = max_force,
+                                  .direction_W = direction_W},
                                  file.limits.soft_start, stop);
 }
 
@@ -279,6 +286,7 @@ class LateCounter {
 
 /// Returns an error if an arm cannot be identified with these options.
 driver::Result<void> check_asked(const scene::ArmFile& file, const IdentifyOptions& options) {
+  if (auto asked = check_places(file, options); !asked) return asked;
   if (file.is<driver::VendorPoseArm>()) {
     return driver::Error{
         "Only arms whose joint motors are controlled by current can be identified (PHANTOM, "
@@ -321,7 +329,8 @@ class Identification {
     auto bench = open_(loaded);
     if (!bench) return bench.error();
     const LateCounter counter(**bench, late_);
-    if (!loaded) (*bench)->watch(options_.watch);
+    scene::Progress progress(loaded ? "identify, known mass" : "identify");
+    count_ticks(**bench, loaded, progress);
     Motion motion;
     if (auto done = record(**bench, loaded, motion); !done) return done;
     if (auto done = loaded ? clean_loaded(motion) : clean_bare(motion); !done) return done;
@@ -334,10 +343,27 @@ class Identification {
     const auto alone = arm_constants(motion.fit, down_B_, {}, 0);
     if (!alone) return alone.error();
     judge(loaded, motion, *alone);
-    if (loaded) return {};
+    if (loaded) {
+      progress.set_share(1.0);
+      return {};
+    }
     if (options_.link) look_at_link(**bench, file_, *alone, options_.max_force, stop_, found_);
+    progress.set_share(1.0);
     read_late_ = (*bench)->read_late();
     return {};
+  }
+
+  /// Passes the ticks of a motion to the caller, and counts them for the progress.
+  void count_ticks(BenchArm& bench, bool loaded, scene::Progress& progress) {
+    const double moved = options_.lead + options_.seconds;
+    const double poses =
+        loaded ? 0 : options_.places * (options_.place_seconds + kPlaceLead + kWayToPlace);
+    const double planned = (moved + poses) / kMotionShare * kTicksPerSecond;
+    bench.watch(
+        [this, loaded, planned, ticks = 0.0, &progress](const driver::TickRecord& tick) mutable {
+          if (!loaded && options_.watch) options_.watch(tick);
+          progress.set_share(std::min(++ticks / planned, kMotionShare));
+        });
   }
 
   driver::Result<void> record(BenchArm& bench, bool loaded, Motion& motion) {
@@ -361,6 +387,8 @@ class Identification {
     if (!fit) return fit.error();
     motion.fit = *fit;
     found_.encoders.step = encoder_steps(motion.recorded);
+    // These searches need the motion of three joints.
+    if (motion.recorded.motors < 3) return {};
     found_.spectrum = line_spectrum(motion.recorded);
     found_.lines = fit_cables(found_.spectrum, motion.fit, motion.recorded.dt);
     if (auto done = look_for_cogging(file_, motion.recorded, motion.fit, found_); !done)

@@ -119,6 +119,13 @@ std::string late_ticks_text(const LateTicks& late);
 /// Opens the bench for one motion, with or without the known mass on the tip.
 using OpenBench = std::function<driver::Result<std::unique_ptr<BenchArm>>(bool loaded)>;
 
+/// Returns the max. force of an identification that names none: 1 N, or the limit of the arm file
+/// if that is lower, N.
+double default_max_force(const scene::ArmFile& file);
+
+/// Returns an error if poses are requested from an arm with less than three motors.
+driver::Result<void> check_places(const scene::ArmFile& file, const IdentifyOptions& options);
+
 /// Returns an error if the max. force and the known mass are incompatible with each other or with
 /// the file's limits.
 driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOptions& options);

@@ -72,6 +72,18 @@ std::string late_ticks_text(const LateTicks& late) {
       late.late, late.ticks, 1e3 * late.worst);
 }
 
+double default_max_force(const scene::ArmFile& file) {
+  return std::min(kIdentifyForceMax, file.limits.force_max);
+}
+
+driver::Result<void> check_places(const scene::ArmFile& file, const IdentifyOptions& options) {
+  if (file.motors() == 3 || options.places == 0) return {};
+  return driver::Error{fmt::format(
+      "--places {}: the inertia of links is identified for arms with three motors only, "
+      "and {} has {}. Remove --places, or pass --places 0.",
+      options.places, file.name, file.motors())};
+}
+
 driver::Result<void> check_forces(const scene::ArmFile& file, const IdentifyOptions& options) {
   if (!(options.max_force >= kForceMin)) {
     return driver::Error{fmt::format(

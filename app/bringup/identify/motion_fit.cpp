@@ -56,6 +56,10 @@ class Fit {
     }
     normal(MassNormalisedFit::kCount, MassNormalisedFit::kCount) = 1;
     leave_out(normal);
+    // Motors and axes that the arm does not have are in no equation.
+    for (int k = 0; k < MassNormalisedFit::kCount; ++k) {
+      if (normal(k, k) == 0) normal(k, k) = 1;
+    }
     for (int k = 0; k < MassNormalisedFit::kCount; ++k) right[k] = is_asked(k) ? right[k] : 0;
     theta = normal.ldlt().solve(right);
     return square - theta.dot(right);
@@ -84,6 +88,7 @@ class Fit {
 
   MassNormalisedFit at_delay(double delay) const {
     MassNormalisedFit found;
+    found.motors = equations_.motion().motors;
     Row theta;
     solve(delay, theta);
     found.theta = theta.head<MassNormalisedFit::kCount>();

@@ -31,6 +31,7 @@ struct MassNormalisedFit {
   Eigen::Matrix<double, kCount, 1> theta = Eigen::Matrix<double, kCount, 1>::Zero();
   Eigen::Matrix<double, kCount, kCount> covariance = Eigen::Matrix<double, kCount, kCount>::Zero();
   Estimate delay;            ///< Delay from the force to the motion that the host sees, s.
+  int motors = 3;            ///< Number of motors; the gains of others are 0.
   double residual = 0;       ///< RMS residual of the acceleration, m/s^2.
   double noise = 0;          ///< RMS residual due to the encoders' steps only, m/s^2.
   double explained = 0;      ///< Share of the acceleration's variance that the model explains.

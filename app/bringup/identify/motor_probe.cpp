@@ -210,7 +210,7 @@ driver::Result<Eigen::Vector3d> probe_motors(
     const std::function<bool(const Eigen::Vector3d&)>& within, const std::atomic<bool>& stop) {
   Probe probe(bench, file, max_force, within, stop);
   Eigen::Vector3d shares(1, 1, 1);
-  for (int joint = 0; joint < 3; ++joint) {
+  for (int joint = 0; joint < file.motors(); ++joint) {
     const auto share = probe.share_of(joint);
     if (!share) return share.error();
     shares[joint] = *share;

@@ -9,6 +9,7 @@
 #include "bringup/identify/arm_constants.h"
 #include "bringup/identify/excitation.h"
 #include "bringup/identify/motor_probe.h"
+#include "bringup/identify/sent_torques.h"
 #include "gravity_terms.h"
 #include "math/elementary.h"
 
@@ -42,6 +43,7 @@ class Recorder {
            const std::atomic<bool>& stop)
       : bench_(bench),
         file_(file),
+        torques_(file),
         lead_(order.lead),
         max_force_(order.max_force),
         share_(order.share),
@@ -130,7 +132,11 @@ class Recorder {
     ArmMotion motion;
     motion.dt = kTick;
     motion.added_mass = order.added_mass;
+    motion.motors = file_.motors();
     motion.down_B = file_.R_WB.transpose() * Eigen::Vector3d(0, 0, -1);
+    if (motion.motors < 3) {
+      motion.down_B = motion.down_B.cwiseProduct(driver::free_axes(motion.motors));
+    }
     for (std::size_t i = 0; i < 3; ++i) {
       motion.step[static_cast<Eigen::Index>(i)] = file_.model.step(i);
     }
@@ -198,14 +204,15 @@ class Recorder {
     return carried_W_ + f * ((std::sqrt(along * along + square * left) - along) / square);
   }
 
-  /// Returns the torques of the acting force, in the pose for which it was sent.
+  /// Returns the torques of the last message, in the pose for which it was sent.
   Eigen::Vector3d sent_torque(const MotionSample& then) const {
     const Eigen::Vector3d f_T_B = file_.R_WB.transpose() * bench_.device().f_sent_W();
-    return then.G.transpose().inverse() * f_T_B;
+    return torques_.sent(then.G.transpose().inverse() * f_T_B);
   }
 
   BenchArm& bench_;
   const scene::ArmFile& file_;
+  SentTorques torques_;
   double lead_;                         // s
   double max_force_;                    // N
   Eigen::Vector3d share_;               // of the requested torques, joint by joint

@@ -112,7 +112,7 @@ bool explain(const FittedMotion& motion, const std::array<Saturation, 3>& all) {
 
 std::array<Saturation, 3> saturations(const FittedMotion& motion) {
   std::array<Saturation, 3> all;
-  for (int joint = 0; joint < 3; ++joint) {
+  for (int joint = 0; joint < motion.motion().motors; ++joint) {
     Saturation& one = all[static_cast<std::size_t>(joint)];
     std::vector<double> asked;
     for (const MotionSample& sample : motion.motion().samples) {

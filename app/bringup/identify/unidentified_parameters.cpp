@@ -152,7 +152,12 @@ void of_rotor_friction(const Identified& identified, Sentences& all) {
   }
 }
 
-void of_friction(const FrictionDirections& friction, Sentences& all) {
+void of_friction(const FrictionDirections& friction, int motors, Sentences& all) {
+  if (motors < 3) {
+    all.emplace_back(
+        "Dry friction that differs between axes or directions: searched only with three motors.");
+    return;
+  }
   if (!friction.axes_differ && !friction.directions_differ) {
     double limit = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -173,7 +178,7 @@ void of_saturation(const Identified& identified, Sentences& all) {
     return;
   }
   std::string none, blind;
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(identified.moved.motors); ++i) {
     const Saturation& one = identified.saturation[i];
     if (one.seen) continue;
     std::string& text = one.searched ? none : blind;
@@ -189,8 +194,8 @@ void of_saturation(const Identified& identified, Sentences& all) {
   }
 }
 
-void of_encoders(const Encoders& encoders, Sentences& all) {
-  for (std::size_t i = 0; i < 3; ++i) {
+void of_encoders(const Encoders& encoders, std::size_t motors, Sentences& all) {
+  for (std::size_t i = 0; i < motors; ++i) {
     if (encoders.step[i].counts == 0) {
       all.push_back(
           fmt::format("Step of encoder {}: the encoder did not count step by step, so its smallest "
@@ -205,7 +210,7 @@ void of_encoders(const Encoders& encoders, Sentences& all) {
     all.emplace_back("Noise of the encoders: not requested.");
     return;
   }
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < motors; ++i) {
     if (encoders.rest->at_rest[i]) continue;
     all.push_back(
         fmt::format("Noise of encoder {}: not measured; the joint did not come to rest, so noise "
@@ -243,7 +248,7 @@ void of_cogging(const Identified& identified, Sentences& all) {
     all.push_back(fmt::format(
         "Cogging and ripple of the motors: detected and removed from the motion, but the number of "
         "periods per turn is ambiguous: {:g}{} fit about equally well. Record for longer "
-        "(--seconds), or set drive_train: {{periods_per_turn: ...}} in the arm file.",
+        "(--duration), or set drive_train: {{periods_per_turn: ...}} in the arm file.",
         waves.periods, others));
     return;
   }
@@ -343,10 +348,10 @@ std::vector<std::string> unidentified_parameters(const Identified& identified) {
         "Dry friction that differs between axes or directions: not searched because of backlash or "
         "friction of the motors.");
   } else {
-    of_friction(identified.friction, all);
+    of_friction(identified.friction, identified.moved.motors, all);
   }
   of_saturation(identified, all);
-  of_encoders(identified.encoders, all);
+  of_encoders(identified.encoders, static_cast<std::size_t>(identified.moved.motors), all);
   of_link(identified, all);
   of_backlash(identified, all);
   of_rotor_friction(identified, all);

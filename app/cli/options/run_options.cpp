@@ -7,8 +7,11 @@
 
 #include "cli/commands.h"
 #include "cli/file_options.h"
+#include "cli/options/json_option.h"
+#include "cli/options/theme_option.h"
 #include "cli/parts/part.h"
 #include "cli/usage/help_text.h"
+#include "hand/button_plan.h"
 #include "hold_key.h"
 #include "log/logger.h"
 #include "ros2/ros_module.h"
@@ -46,9 +49,19 @@ driver::Result<void> check_run_options(RunOptions& options) {
   if (options.ros.asked) {
     if (auto there = ros2::check_ros_module(); !there) return there;
   }
+  if (!options.presses.empty() && options.devices != std::vector<std::string>{"sim"}) {
+    return driver::Error{
+        "--button-at presses buttons of a simulated arm. Remove it to use a real arm."};
+  }
+  const auto presses = scene::read_button_presses("--button-at", options.presses);
+  if (!presses) return presses.error();
+  options.buttons = scene::steps_of(*presses);
   const bool felt = options.sound || options.rumble;
   if (felt && !options.view && !options.by_viewer()) {
     return driver::Error{"--sound and --rumble require the window. Add --view."};
+  }
+  if (!options.theme.empty() && !options.view && !options.by_viewer()) {
+    return driver::Error{"--theme requires the window. Add --view."};
   }
   if (felt && options.clock == "virtual") {
     return driver::Error{
@@ -134,6 +147,7 @@ session::SessionOptions session_options(const RunOptions& options, const session
   asked.share_name = options.name;
   asked.hand_by_mouse = options.by_viewer();
   asked.hand_by_program = options.by_topic();
+  asked.buttons = options.buttons;
   asked.homed = options.homed;
   asked.hold = *session::hold_named(options.hold_to_run);  // checked before
   asked.several_arms = true;
@@ -153,11 +167,16 @@ session::ViewerChoice viewer_choice(const RunOptions& options) {
   return asked ? session::ViewerChoice::kAsked : session::ViewerChoice::kIfWatched;
 }
 
-std::vector<std::string> viewer_arguments(const RunOptions& options) {
+std::vector<std::string> viewer_arguments(const RunOptions& options,
+                                          const session::SessionOptions& asked) {
   std::vector<std::string> arguments;
   if (options.by_viewer()) arguments = {"--hand", options.hand};
   if (options.sound) arguments.emplace_back("--sound");
   if (options.rumble) arguments.emplace_back("--rumble");
+  if (!options.theme.empty()) arguments.insert(arguments.end(), {"--theme", options.theme});
+  for (const std::string& word : run_again_words(options, asked)) {
+    arguments.push_back("--run-again=" + word);
+  }
   return arguments;
 }
 
@@ -222,9 +241,16 @@ void add_time_options(CLI::App& command, RunOptions& options) {
       ->check(CLI::Range(session::kSpeedMin, session::kSpeedMax))
       ->group(kTime);
   command.add_flag("--loop", options.loop, "Restart the run whenever it ends")->group(kTime);
+  // Two plain flags: the library sets a flag with a negation to false if it is absent.
   command
-      .add_flag("--reload,!--no-reload", options.reload,
-                "Restart when the scene or arm file changes")
+      .add_flag_callback(
+          "--reload", [&options] { options.reload = true; },
+          "Restart when the scene or arm file changes")
+      ->group(kTime);
+  command
+      .add_flag_callback(
+          "--no-reload", [&options] { options.reload = false; },
+          "Do not restart when a file changes")
       ->group(kTime);
 }
 
@@ -232,6 +258,11 @@ void add_hand_options(CLI::App& command, RunOptions& options) {
   command.add_option("--hand", options.hand, "Input that moves the simulated hand")
       ->check(CLI::IsMember({"path", "mouse", "keyboard", "gamepad", "spacemouse", "topic"}))
       ->capture_default_str()
+      ->group("Hand");
+  command
+      .add_option("--button-at", options.presses, "Press a button of the simulated arm at a time")
+      ->allow_extra_args(false)
+      ->option_text("SECONDS[:BUTTON[:DURATION]]")
       ->group("Hand");
 }
 
@@ -249,6 +280,8 @@ void add_viewing_options(CLI::App& command, RunOptions& options) {
       .add_flag("--sound", options.sound, "Play the contact as sound (clicks, textures, friction)")
       ->group(kViewing);
   command.add_flag("--rumble", options.rumble, "Play the contact as rumble of a gamepad")
+      ->group(kViewing);
+  add_theme_option(command, options.theme, "Colour theme of the window (default light)")
       ->group(kViewing);
   command.add_option("--name", options.name, "Name for `thimble view NAME` (default: the scene's)")
       ->option_text("NAME")
@@ -268,6 +301,7 @@ void add_computation_options(CLI::App& command, RunOptions& options) {
 
 void add_output_options(CLI::App& command, RunOptions& options) {
   constexpr const char* kOutput = "Output";
+  add_json_option(command)->group(kOutput);
   command
       .add_option("--report", options.report, "Write report.json, pictures and a page of the run")
       ->option_text("DIR")
@@ -301,10 +335,13 @@ constexpr const char* kRunNotes =
     "           simulated arms.\n"
     "--loop     To end it: Ctrl-C, stop in a viewer, or close the window of --view.\n"
     "           Later recordings are named FILE-2.h5, FILE-3.h5 and so on.\n"
+    "--view     After the end, Restart in the window runs it again (simulated arms).\n"
     "--reload   Default with --view, or with a hand moved in the window.\n"
     "--hand     path: the path in the scene. mouse, keyboard, gamepad, spacemouse\n"
     "           (3Dconnexion): input in the window; the run ends when it is closed.\n"
     "           topic: the ROS 2 topic command/pose (crtk: servo_cp).\n"
+    "--button-at  Repeat for a further press. Without BUTTON, the first; without\n"
+    "           DURATION, 0.2 s.\n"
     "--sound, --rumble  Require the window.\n"
     "--quality  draft: lowest cost; reference: errors below perception at any cost;\n"
     "           auto: lowest cost with errors below perception. With --budget, auto\n"

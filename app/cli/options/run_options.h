@@ -29,9 +29,12 @@ struct RunOptions {
   std::string save_mesh;
   std::string save_object;
   std::string hand = "path";
+  std::vector<std::string> presses;
+  std::vector<scene::ButtonStep> buttons;  // read from `presses` by check_run_options
   std::string name;
   bool view = false, no_view = false;
   bool sound = false, rumble = false;
+  std::string theme;  // of the window; empty: light
   bool loop = false;
   std::optional<bool> reload;   // none: chosen automatically
   std::optional<double> speed;  // times real time
@@ -76,7 +79,16 @@ session::SessionOptions session_options(const RunOptions& options, const session
 /// Returns which viewer shows the run.
 session::ViewerChoice viewer_choice(const RunOptions& options);
 
-/// Returns the arguments of `thimble view` in addition to the run's name.
-std::vector<std::string> viewer_arguments(const RunOptions& options);
+/// Returns the arguments of `thimble view` in addition to the run's name. `asked`: the session's
+/// options.
+std::vector<std::string> viewer_arguments(const RunOptions& options,
+                                          const session::SessionOptions& asked);
+
+/// Returns the arguments of `thimble` by which the window starts an ended run again: `run`, the
+/// scene, and the options that change the ticks. They write no file. Empty if the run cannot be
+/// started without its terminal: with a real arm, with topics, or with the key of the terminal as
+/// enabling input.
+std::vector<std::string> run_again_words(const RunOptions& options,
+                                         const session::SessionOptions& asked);
 
 }  // namespace thimble::cli

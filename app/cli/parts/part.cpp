@@ -31,6 +31,10 @@ std::filesystem::path part_program(const Part& part) {
   return find_beside_program(part.package, {".", THIMBLE_PART_PROGRAMS});
 }
 
+std::filesystem::path main_program() {
+  return find_beside_program("thimble", {".", THIMBLE_MAIN_PROGRAM});
+}
+
 std::string how_to_get(const Part& part) {
   const std::string package = part.package, option = part.option;
   return (package.empty()

@@ -31,6 +31,10 @@ std::filesystem::path find_beside_program(const std::string& name,
 /// empty if there is none. Real-time: never from the servo thread.
 std::filesystem::path part_program(const Part& part);
 
+/// Returns the program `thimble`, from that of a part: the reverse of `part_program`. Real-time:
+/// never from the servo thread.
+std::filesystem::path main_program();
+
 /// Returns how to get a part, as the end of a sentence without its full stop.
 std::string how_to_get(const Part& part);
 

@@ -57,6 +57,7 @@ int run(int argc, char** argv, const Program& program) {
   check_numbers(app);
   check_texts(app);
   if (argc <= 1) {
+    if (program.without_arguments != nullptr) program.without_arguments();
     scene::print_format("%s", app.help().c_str());
     return kExitDone;
   }

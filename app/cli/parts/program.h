@@ -16,6 +16,9 @@ struct Program {
   const char* name;   ///< Name of its manual page.
   const char* about;  ///< Purpose, without a full stop.
   std::vector<AddCommand> commands;
+  /// Called without arguments, before the help is printed; null: the help only. It may replace this
+  /// process.
+  void (*without_arguments)() = nullptr;
 };
 
 /// Runs a program with the arguments of `main`, and returns its exit code (exit_code.h).

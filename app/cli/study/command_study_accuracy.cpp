@@ -7,12 +7,15 @@
 
 #include "cli/commands.h"
 #include "cli/file_options.h"
+#include "cli/options/json_option.h"
+#include "cli/options/old_names.h"
 #include "cli/report_error.h"
 #include "cli/study/end_study.h"
 #include "cli/usage/help_text.h"
 #include "log/printed_text.h"
 #include "output/output_file.h"
 #include "output/output_plan.h"
+#include "report/figure_json.h"
 #include "report/figure_output.h"
 #include "signals.h"
 #include "studies/accuracy/gating/gating.h"
@@ -44,7 +47,7 @@ int run_accuracy(const AccuracyOptions& options) {
   }
   const std::filesystem::path folder = options.out;
   output::OutputPlan plan;
-  plan.write_folder("--out", folder, {"figures.json", "index.html"});
+  plan.write_folder("--output", folder, {"figures.json", "index.html"});
   if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const std::atomic<bool>& stop = scene::catch_interrupts();
   const auto report = studies::study_accuracy({.axes = options.axes,
@@ -90,7 +93,7 @@ int run_gating(const GatingOptions& options) {
   const std::filesystem::path folder = options.out;
   output::OutputPlan plan;
   plan.read(options.scene);
-  plan.write_folder("--out", folder, {"figures.json", "gating.txt", "index.html"});
+  plan.write_folder("--output", folder, {"figures.json", "gating.txt", "index.html"});
   if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto report = studies::decide_gating(options.scene, !options.no_count);
   if (!report) return report_error(report.error(), kExitBadInput);
@@ -102,6 +105,8 @@ int run_gating(const GatingOptions& options) {
         write_gating_runs(options.scene, *report, folder)}) {
     if (!written) return report_error(written.error(), kExitTrouble);
   }
+  print_json("study", {{"folder", folder.string()},
+                       {"figures", report::figures_json(studies::figures_of(*report))}});
   scene::print_format("Written to %s; index.html lists the pages of the runs.\n", folder.c_str());
   return kExitDone;
 }
@@ -111,9 +116,11 @@ int run_gating(const GatingOptions& options) {
 void add_gating_options(CLI::App& command, int& exit_code) {
   auto options = std::make_shared<GatingOptions>();
   add_scene_option(command, options->scene)->required();
-  command.add_option("--out", options->out, "Folder for gating.txt and figures.json")
-      ->option_text("DIR")
-      ->capture_default_str();
+  CLI::Option* output =
+      command.add_option("--output", options->out, "Folder for gating.txt and figures.json")
+          ->option_text("DIR")
+          ->capture_default_str();
+  add_old_name(command, "--out", output, options->out);
   command.add_flag("--no-count", options->no_count,
                    "Compare times only, without instruction counts");
   command.callback([options, &exit_code] { exit_code = run_gating(*options); });
@@ -123,9 +130,11 @@ void add_accuracy_options(CLI::App& command, int& exit_code) {
   auto options = std::make_shared<AccuracyOptions>();
   command.add_option("--axis", options->axes, "Parameters to vary, e.g. velocity (default: all)")
       ->option_text("NAME ...");
-  command.add_option("--out", options->out, "Folder for the page, pictures and tables")
-      ->option_text("DIR")
-      ->capture_default_str();
+  CLI::Option* output =
+      command.add_option("--output", options->out, "Folder for the page, pictures and tables")
+          ->option_text("DIR")
+          ->capture_default_str();
+  add_old_name(command, "--out", output, options->out);
   command
       .add_option("--table", options->table, "Only write the table of --quality auto (see below)")
       ->option_text("FILE");

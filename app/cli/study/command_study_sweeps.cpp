@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/file_options.h"
+#include "cli/options/old_names.h"
 #include "cli/report_error.h"
 #include "cli/study/end_study.h"
 #include "log/printed_text.h"
@@ -23,9 +24,10 @@ struct SweepChoice {
   bool resume = false;
 
   void add_options(CLI::App& command) {
-    command.add_option("--out", out, "Folder for results and journal")
-        ->option_text("DIR")
-        ->capture_default_str();
+    CLI::Option* output = command.add_option("--output", out, "Folder for results and journal")
+                              ->option_text("DIR")
+                              ->capture_default_str();
+    add_old_name(command, "--out", output, out);
     command.add_option("--jobs", jobs, "Threads per process; 0: one per core")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
@@ -42,7 +44,7 @@ int run_by_sweep(const SweepChoice& choice, const Run& run) {
   if (!team) return report_error(team.error(), kExitBadInput);
   const bool leads = *team == nullptr || (*team)->rank() == 0;
   output::OutputPlan plan;
-  if (leads) plan.write_folder("--out", choice.out, {"figures.json"});
+  if (leads) plan.write_folder("--output", choice.out, {"figures.json"});
   if (auto begun = plan.begin(); !begun) return report_error(begun.error(), kExitBadInput);
   const auto report = run(
       studies::SweepOptions{

@@ -2,8 +2,10 @@
 
 #include <cstdio>
 
+#include "cli/options/json_option.h"
 #include "cli/report_error.h"
 #include "log/printed_text.h"
+#include "report/figure_json.h"
 
 namespace thimble::cli {
 
@@ -14,9 +16,10 @@ ExitCode end_study(const std::vector<session::Figure>& figures, const std::files
   }
   scene::print_format("%s\nWritten to %s%s.\n", report::figure_table(figures).c_str(),
                       folder.c_str(), where_to_look.c_str());
+  print_json("study", {{"folder", folder.string()}, {"figures", report::figures_json(figures)}});
   const std::string unmet = report::unmet_line(figures);
   if (unmet.empty()) return kExitDone;
-  scene::print_format("%s\n", unmet.c_str());
+  scene::print_toned(scene::Tone::kBad, unmet + "\n");
   return kExitUnmet;
 }
 

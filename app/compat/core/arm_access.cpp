@@ -14,6 +14,7 @@
 
 #include "byte_lock.h"
 #include "compat/core/arm_channel.h"
+#include "compat/core/arm_listing.h"
 #include "compat/core/open_channel.h"
 #include "compat/core/shared_wait.h"
 
@@ -31,6 +32,7 @@ struct OwnArm {
   std::atomic<int> opened{0};                // number of openings
   std::uint64_t number = 0;                  // number of the last force
   std::atomic<const char*> leader{nullptr};  // the only thread whose waits advance time
+  std::mutex questions;                      // one question at a time
 };
 
 // Never destroyed: threads of the program may use it while it exits.
@@ -108,11 +110,7 @@ void permit(ArmChannel& arm, std::uint32_t ticks) noexcept {
 /// none.
 int paced_arm(int first = 0) noexcept {
   for (int arm = first; arm < kArmsMax; ++arm) {
-    const ArmChannel* channel = channel_of(arm);
-    if (channel != nullptr && channel->paced.load() != 0 &&
-        channel->state.load() == ChannelState::kOpen) {
-      return arm;
-    }
+    if (is_paced(arm)) return arm;
   }
   return -1;
 }
@@ -169,6 +167,7 @@ std::string request_arm(Channel& channel, ArmChannel& arm, const char* api) {
   arm.watchdog_ns.store(0);
   arm.speed_limit.store(0);
   arm.force_limit.store(0);
+  arm.regulated.store(0);
   arm.state.store(ChannelState::kWanted);
   channel.requests.fetch_add(1);
   wake_all(channel.requests);
@@ -205,6 +204,18 @@ int count() noexcept {
   return channel == nullptr ? 0 : channel->arm_count;
 }
 
+int listed(const char* api) noexcept {
+  Channel* channel = open_channel();
+  return channel != nullptr && may_list_arms(*channel, api) ? channel->arm_count : 0;
+}
+
+bool is_taken(int arm) noexcept {
+  const Channel* channel = open_channel();
+  if (channel == nullptr || !is_number(arm) || arm >= channel->arm_count) return false;
+  return own(arm).opened.load() == 0 &&
+         driver::is_byte_locked(channel_file(), kFirstOwnerByte + arm);
+}
+
 std::string open(int arm, const char* api) {
   std::string trouble;
   Channel* channel = open_channel(&trouble);
@@ -225,6 +236,7 @@ std::string open(int arm, const char* api) {
   }
   trouble = request_arm(*channel, shared, api);
   if (trouble.empty()) {
+    may_list_arms(*channel, api);
     own_arm.number = shared.taken.load();
     own_arm.opened.store(1, std::memory_order_release);
   } else {
@@ -239,6 +251,7 @@ bool close(int arm) noexcept {
   if (shared == nullptr) return false;
   if (own(arm).opened.fetch_sub(1) > 1) return true;
   shared->enabled.store(0);
+  shared->regulated.store(0);
   if (shared->state.exchange(ChannelState::kLeaving) == ChannelState::kEnded) {
     shared->state.store(ChannelState::kClosed);  // its run has ended by itself
     release_arm(arm);
@@ -264,11 +277,16 @@ bool is_running(int arm) noexcept {
   return channel != nullptr && channel->state.load() == ChannelState::kOpen && is_server_alive();
 }
 
-const ArmFacts& facts(int arm) noexcept {
-  static const ArmFacts none;
+bool is_paced(int arm) noexcept {
+  const ArmChannel* channel = channel_of(arm);
+  return channel != nullptr && channel->paced.load() != 0 &&
+         channel->state.load() == ChannelState::kOpen;
+}
+
+ArmFacts facts(int arm) noexcept {
   const Channel* channel = open_channel();
-  if (channel == nullptr || !is_number(arm) || arm >= channel->arm_count) return none;
-  return channel->arms[static_cast<std::size_t>(arm)].facts;
+  if (channel == nullptr || !is_number(arm) || arm >= channel->arm_count) return {};
+  return read_facts(channel->arms[static_cast<std::size_t>(arm)]);
 }
 
 std::string name(int arm) {
@@ -280,6 +298,31 @@ std::string name(int arm) {
 bool read(int arm, ArmReading& reading) noexcept {
   const ArmChannel* channel = channel_of(arm);
   return channel != nullptr && channel->reading.load(reading);
+}
+
+bool jacobian_at(int arm, const std::array<double, 3>& q, std::array<double, 9>& J_WT) noexcept {
+  ArmChannel* shared = channel_of(arm);
+  if (shared == nullptr || !read_facts(*shared).has_joints) return false;
+  JointQuestion& question = shared->joints;
+  const std::lock_guard lock(own(arm).questions);
+  question.q = q;
+  const std::uint32_t number = question.asked.fetch_add(1) + 1;
+  Channel* channel = open_channel();
+  channel->requests.fetch_add(1);
+  wake_all(channel->requests);
+  for (;;) {
+    const std::uint32_t answered = question.answered.load(std::memory_order_acquire);
+    if (answered == number) break;
+    if (shared->state.load() != ChannelState::kOpen) return false;
+    wait_while(question.answered, answered, kLook_ns);
+    if (question.answered.load() == answered && !is_server_alive()) return false;
+  }
+  // A pose that the arm cannot have is answered by NaN.
+  for (const double number_of_J : question.J_WT) {
+    if (!std::isfinite(number_of_J)) return false;
+  }
+  J_WT = question.J_WT;
+  return true;
 }
 
 bool wait_for_tick(int arm, std::uint64_t tick) noexcept {
@@ -380,6 +423,10 @@ bool set_force_limit(int arm, double force) noexcept {
   return set(arm, &ArmChannel::force_limit, force > 0 ? force : 0.0);
 }
 
+bool set_regulated(int arm, bool regulated) noexcept {
+  return set(arm, &ArmChannel::regulated, std::uint32_t{regulated});
+}
+
 bool mark_calibrated(int arm) noexcept {
   return set(arm, &ArmChannel::calibrated, std::uint32_t{1});
 }
@@ -392,21 +439,26 @@ bool is_calibrated(int arm) noexcept {
 void wrong_call(const char* function, const char* what) noexcept {
   Channel* channel = open_channel();
   if (channel == nullptr) return;
-  static std::mutex& mutex = *new std::mutex;
-  const std::lock_guard lock(mutex);
+  // Several programs and libraries write this table, so an entry is read only if it is ready. If
+  // two of them add one function at once, it has two entries.
   const std::uint32_t used = channel->wrong_calls_used.load();
   for (std::uint32_t i = 0; i < used && i < Channel::kWrongCallsMax; ++i) {
     WrongCall& call = channel->wrong_calls[i];
-    if (std::strncmp(call.function.data(), function, call.function.size() - 1) != 0) continue;
+    if (call.count.load(std::memory_order_acquire) == 0 ||
+        std::strncmp(call.function.data(), function, call.function.size() - 1) != 0) {
+      continue;
+    }
     call.count.fetch_add(1);
     return;
   }
-  if (used >= Channel::kWrongCallsMax) return;
-  WrongCall& call = channel->wrong_calls[used];
+  std::uint32_t entry = used;
+  do {
+    if (entry >= Channel::kWrongCallsMax) return;
+  } while (!channel->wrong_calls_used.compare_exchange_weak(entry, entry + 1));
+  WrongCall& call = channel->wrong_calls[entry];
   copy_text(call.function, function);
   copy_text(call.what, what);
-  call.count.store(1);
-  channel->wrong_calls_used.store(used + 1);
+  call.count.store(1, std::memory_order_release);
 }
 
 }  // namespace thimble::compat::arms

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -18,9 +19,15 @@ namespace arms {
 
 /// Returns how many arms may be opened; 0 if the program was not started by `thimble exec`.
 int count() noexcept;
+/// Returns how many arms the library `api` lists: `count`, or 0 if another compatibility library of
+/// this process has listed or opened arms before. So a program that searches through several
+/// libraries finds each arm once.
+int listed(const char* api) noexcept;
+/// Returns whether another program, or another library of this one, has an arm open.
+bool is_taken(int arm) noexcept;
 
 /// Opens an arm, or opens it once more if it is open, and starts its loop. Its force is off until
-/// `enable_force`. `face`: name of the interface for the report ("HDAPI"). Returns an empty text,
+/// `enable_force`. `api`: name of the interface for the report ("HDAPI"). Returns an empty text,
 /// or the problem and its remedy. Waits until the arm is open.
 std::string open(int arm, const char* api);
 /// Closes an arm. After as many calls as `open`, its force goes to zero and it may be opened again.
@@ -30,16 +37,20 @@ bool close(int arm) noexcept;
 bool is_open(int arm) noexcept;
 /// Returns whether an arm's loop runs. False: `thimble exec` or the run has ended.
 bool is_running(int arm) noexcept;
+/// Returns whether an open arm's ticks wait for this program (`thimble exec --clock virtual`).
+bool is_paced(int arm) noexcept;
 /// Returns the constant properties of an arm. Before the first opening, those of its arm file
-/// (zeros if a real arm is not chosen yet); zeros beyond `count`. No other thread may open the arm
-/// meanwhile.
-const ArmFacts& facts(int arm) noexcept;
+/// (zeros if a real arm is not chosen yet); zeros beyond `count`. From any thread.
+ArmFacts facts(int arm) noexcept;
 /// Returns the name of an arm as passed to `thimble exec`; the arm need not be open. Empty beyond
 /// `count`.
 std::string name(int arm);
 
 /// Copies the state after the newest tick. False if the arm is not open; then nothing changes.
 bool read(int arm, ArmReading& reading) noexcept;
+/// Finds the Jacobian d p_WT / d q (m/rad, row by row) at any joint angles (rad). False if the arm
+/// is not open or has no joints, or its parts cannot have these angles. Waits for the server.
+bool jacobian_at(int arm, const std::array<double, 3>& q, std::array<double, 9>& J_WT) noexcept;
 /// Waits until a tick after `tick` is over. If there will be none, returns false after a sleep of
 /// one period.
 bool wait_for_tick(int arm, std::uint64_t tick) noexcept;
@@ -74,6 +85,10 @@ bool set_speed_limit(int arm, double speed) noexcept;
 /// Sets the maximum force (N) of this program; larger forces are limited to it. Above the gate's
 /// limit, or 0: the gate's.
 bool set_force_limit(int arm, double force) noexcept;
+
+/// Sets whether the program holds or moves the tip by its forces. A simulated hand then yields; a
+/// person is not affected.
+bool set_regulated(int arm, bool regulated) noexcept;
 
 /// Records that a program has calibrated an arm, as its interface requires. It remains valid after
 /// `close`, and for other programs of the same `thimble exec`.

@@ -41,13 +41,23 @@ struct ForceWritten {
   std::uint64_t number = 0;  ///< Incremented with each; 0: none yet.
 };
 
+/// A question of the program for the motion of the tip at given joint angles. The server answers
+/// it, because only it has the geometry of the arm.
+struct JointQuestion {
+  std::array<double, 3> q{};               ///< Joint angles, rad (written by the program).
+  std::array<double, 9> J_WT{};            ///< Answer: d p_WT / d q, m/rad, row by row.
+  std::atomic<std::uint32_t> asked{0};     ///< Number of the question.
+  std::atomic<std::uint32_t> answered{0};  ///< A futex: number of the newest answer.
+};
+
 /// One arm of the channel.
 struct ArmChannel {
   std::array<char, 64> name{};                             ///< Name passed to `thimble exec`.
   std::atomic<ChannelState> state{ChannelState::kClosed};  ///< A futex.
   std::array<char, 32> api{};                              ///< The compatibility library used.
   std::array<char, 1024> trouble{};                        ///< Reason of kFailed.
-  ArmFacts facts;                                          ///< Written while it is not open.
+  driver::Snapshot<ArmFacts> facts;                        ///< Written while it is not open, and
+                                                           ///< read at any time.
 
   driver::Snapshot<ArmReading> reading;     ///< Written by the servo.
   std::atomic<std::uint32_t> ticks{0};      ///< A futex; grows with each tick.
@@ -63,7 +73,16 @@ struct ArmChannel {
   std::atomic<double> speed_limit{0};        ///< m/s; 0: the gate's.
   std::atomic<double> force_limit{0};        ///< N; 0: the gate's.
   std::atomic<std::uint32_t> calibrated{0};  ///< Whether a program has calibrated it (HDAPI).
+  std::atomic<std::uint32_t> regulated{0};   ///< The program moves the tip: a hand yields.
+  JointQuestion joints;                      ///< Question of the program for a Jacobian.
 };
+
+/// Returns the properties of an arm; none if the server has not written any.
+inline ArmFacts read_facts(const ArmChannel& arm) noexcept {
+  ArmFacts facts;
+  arm.facts.load(facts);
+  return facts;
+}
 
 /// A function that was called wrongly.
 struct WrongCall {
@@ -75,6 +94,7 @@ struct WrongCall {
 /// The whole channel.
 struct Channel {
   static constexpr std::size_t kWrongCallsMax = 64;  ///< Functions with separate counts.
+  static constexpr std::size_t kListingsMax = 64;    ///< Processes that list arms [chosen].
 
   /// channel_layout_hash() (channel_layout.h) once the rest is ready; always the first member.
   std::atomic<std::uint64_t> layout{0};
@@ -86,6 +106,8 @@ struct Channel {
   std::atomic<std::uint64_t> torque_requests{0};  ///< Forces with a torque, which is ignored.
   std::atomic<std::uint64_t> gripper_requests{
       0};  ///< Forces with a gripper force, which is ignored.
+  /// Which library lists the arms in each process (arm_listing.h); 0: free.
+  std::array<std::atomic<std::uint64_t>, kListingsMax> listings{};
 };
 
 }  // namespace thimble::compat

@@ -24,7 +24,7 @@ enum class ArmBuild : std::uint8_t {
 /// Properties and limits of an open arm. Constant while it is open.
 struct ArmFacts {
   std::array<char, 64> name{};            ///< Name in its arm file; ends with a 0.
-  std::array<char, 64> serial{};          ///< Name of the real arm; "sim" and a number.
+  std::array<char, 64> serial{};          ///< Name of the real arm; "sim" and its number.
   ArmBuild build = ArmBuild::kSerial;     ///< Mechanism.
   bool simulated = true;                  ///< No real motors.
   bool has_orientation = false;           ///< The arm reports the orientation of the stylus.
@@ -37,6 +37,7 @@ struct ArmFacts {
   double stiffness_max = 0;               ///< Declared by its maker, N/m.
   double damping_max = 0;                 ///< Declared by its maker, N s/m.
   double speed_max = 0;                   ///< The gate's limit, m/s.
+  double rise_max = 0;                    ///< The gate's limit of the force's change, N/s.
   std::int64_t stall_ns = 0;              ///< Pause after which the force rises slowly again, ns.
   std::array<double, 3> workspace_min{};  ///< Minimum corner of the workspace of the tip, m.
   std::array<double, 3> workspace_max{};  ///< Maximum corner, m.

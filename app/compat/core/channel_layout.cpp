@@ -9,19 +9,21 @@ THIMBLE_LAYOUT_ENUM(thimble::compat::ChannelState, kClosed, kWanted, kOpen, kFai
                     kEnded)
 THIMBLE_LAYOUT(thimble::compat::ArmFacts, name, serial, build, simulated, has_orientation,
                has_gimbal, has_gripper, has_joints, rate, force_max, force_continuous,
-               stiffness_max, damping_max, speed_max, stall_ns, workspace_min, workspace_max)
+               stiffness_max, damping_max, speed_max, rise_max, stall_ns, workspace_min,
+               workspace_max)
 THIMBLE_LAYOUT(thimble::compat::GateCuts, limited, rise_limited, soft_started, damped)
 THIMBLE_LAYOUT(thimble::compat::ArmReading, tick, time_ns, p_WT, v_WT, R_WT, w_WT, q, J_WT, gimbal,
                gripper, counts, buttons, f_client_W, f_asked_W, f_sent_W, heat, cuts, stalled,
                stage, fault, link)
 THIMBLE_LAYOUT(thimble::compat::ForceRequest, f_W, torque_W, gripper)
 THIMBLE_LAYOUT(thimble::compat::ForceWritten, asked, number)
+THIMBLE_LAYOUT(thimble::compat::JointQuestion, q, J_WT, asked, answered)
 THIMBLE_LAYOUT(thimble::compat::ArmChannel, name, state, api, trouble, facts, reading, ticks,
                waiting, taken, paced, permitted, force, enabled, enablings, watchdog_ns,
-               speed_limit, force_limit, calibrated)
+               speed_limit, force_limit, calibrated, regulated, joints)
 THIMBLE_LAYOUT(thimble::compat::WrongCall, function, what, count)
 THIMBLE_LAYOUT(thimble::compat::Channel, layout, arm_count, requests, arms, wrong_calls_used,
-               wrong_calls, torque_requests, gripper_requests)
+               wrong_calls, torque_requests, gripper_requests, listings)
 
 namespace thimble::compat {
 

@@ -135,7 +135,8 @@ int dhdGetBaseAngleZDeg(double* angle, char id) {
 int dhdEmulateButton(unsigned char on, char id) {
   OpenArm* arm = open_arm("dhdEmulateButton", id);
   if (!arm) return -1;
-  if (!arms::facts(arm->number).has_gripper) {
+  // Switching off a button that an arm cannot have succeeds.
+  if (on != DHD_OFF && !arms::facts(arm->number).has_gripper) {
     return fail("dhdEmulateButton", DHD_ERROR_NOT_AVAILABLE, "the arm has no gripper");
   }
   arm->emulate_button = on != DHD_OFF;

@@ -30,11 +30,33 @@ bool goal_of(const char* function, const OpenArm& arm, const Eigen::Vector3d& p_
     return false;
   }
   p_W = user_rotation(arm).transpose() * p_U;
-  const ArmFacts& facts = arms::facts(arm.number);
+  const ArmFacts facts = arms::facts(arm.number);
   const bool inside = (p_W.array() >= vector_of(facts.workspace_min).array()).all() &&
                       (p_W.array() <= vector_of(facts.workspace_max).array()).all();
   if (!inside) fail(function, DHD_ERROR_GEOMETRY, "the point is outside the workspace of the arm");
   return inside;
+}
+
+// Result of a motion that was waited for.
+enum class Arrival : std::uint8_t { kArrived, kTimeout, kStopped, kRunOver };
+
+// Moves the tip to a point (m, world) and waits until the regulation has ended the motion.
+Arrival move_and_wait(OpenArm& arm, const Eigen::Vector3d& p_W) noexcept {
+  constexpr double kSpare = 1;  // s, for a regulation whose thread is late
+  ArmReading reading;
+  if (!arms::read(arm.number, reading)) return Arrival::kRunOver;
+  const std::int64_t begin_ns = reading.time_ns;
+  const double longest = arm.regulator.time_to(p_W, vector_of(reading.p_WT)) + kSpare;
+  arm.regulator.move_to(p_W);
+  while (arm.regulator.running() && arm.regulator.moving()) {
+    if (1e-9 * static_cast<double>(reading.time_ns - begin_ns) > longest) return Arrival::kTimeout;
+    arms::wait_for_tick(arm.number, reading.tick);
+    if (!arms::is_running(arm.number) || !arms::read(arm.number, reading)) {
+      return Arrival::kRunOver;
+    }
+  }
+  if (arm.regulator.arrived()) return Arrival::kArrived;
+  return arm.regulator.running() ? Arrival::kTimeout : Arrival::kStopped;
 }
 
 int move(const char* function, char id, const Eigen::Vector3d& p_U, bool wait) noexcept {
@@ -44,27 +66,22 @@ int move(const char* function, char id, const Eigen::Vector3d& p_U, bool wait) n
   if (!arm->regulator.regulates()) {
     return fail(function, DHD_ERROR_NO_REGULATION, "drdRegulatePos is off");
   }
-  arm->regulator.move_to(p_W);
-  if (!wait) return 0;
-  // Three times the duration of the path, plus a second: something holds the arm, or it cannot move
-  // further.
-  const Eigen::Vector3d size = vector_of(arms::facts(arm->number).workspace_max) -
-                               vector_of(arms::facts(arm->number).workspace_min);
-  const double longest =
-      1 + 3 * StraightPath({0, 0, 0}, size, arm->regulator.move_bounds()).duration();
-  ArmReading reading;
-  if (!read_arm(function, *arm, reading)) return -1;
-  const std::int64_t begin_ns = reading.time_ns;
-  while (arm->regulator.moving()) {
-    if (1e-9 * static_cast<double>(reading.time_ns - begin_ns) > longest) {
-      return fail(function, DHD_ERROR_TIMEOUT, "the arm did not reach the point in time");
-    }
-    arms::wait_for_tick(arm->number, reading.tick);
-    if (!read_arm(function, *arm, reading)) return -1;
+  if (!wait) {
+    arm->regulator.move_to(p_W);
+    return 0;
   }
-  if (arm->regulator.running()) return 0;
-  return fail(function, DHD_ERROR_NO_REGULATION,
-              "regulation was stopped before the arm reached the point");
+  switch (move_and_wait(*arm, p_W)) {
+    case Arrival::kArrived:
+      return 0;
+    case Arrival::kTimeout:
+      return fail(function, DHD_ERROR_TIMEOUT, "the arm did not reach the point in time");
+    case Arrival::kStopped:
+      return fail(function, DHD_ERROR_NO_REGULATION,
+                  "regulation was stopped before the arm reached the point");
+    case Arrival::kRunOver:
+      break;
+  }
+  return fail(function, DHD_ERROR_COM, "the run of thimble exec has ended");
 }
 
 int follow(const char* function, char id, const Eigen::Vector3d& p_U) noexcept {
@@ -82,11 +99,29 @@ int set_bounds(const char* function, char id, void (Regulator::*set)(const PathB
                const PathBounds& bounds) noexcept {
   OpenArm* arm = open_arm(function, id);
   if (!arm) return -1;
-  const auto good = [](double value) { return std::isfinite(value) && value > 0; };
-  if (!good(bounds.acceleration) || !good(bounds.speed) || !good(bounds.jerk)) {
+  if (!is_valid(bounds)) {
     return fail(function, DHD_ERROR_INVALID, "a bound is not finite and positive");
   }
   (arm->regulator.*set)(bounds);
+  return 0;
+}
+
+// Sets the force of a released tip: force, torque and gripper.
+int set_free_force(const char* function, char id, const double* force) noexcept {
+  OpenArm* arm = regulated_arm(function, id);
+  if (!arm) return -1;
+  if (!force) return fail(function, DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
+  for (int i = 0; i < 7; ++i) {
+    if (!std::isfinite(force[i]))
+      return fail(function, DHD_ERROR_INVALID, "a number is not finite");
+  }
+  const Eigen::Matrix3d R_WU = user_rotation(*arm).transpose();
+  const Eigen::Vector3d f_W = R_WU * Eigen::Vector3d(force[0], force[1], force[2]);
+  const Eigen::Vector3d torque_W = R_WU * Eigen::Vector3d(force[3], force[4], force[5]);
+  arm->regulator.set_free_force({.f_W = {f_W.x(), f_W.y(), f_W.z()},
+                                 .torque_W = {torque_W.x(), torque_W.y(), torque_W.z()},
+                                 .gripper = force[6]});
+  arms::wait_until_taken(arm->number);
   return 0;
 }
 
@@ -109,12 +144,25 @@ bool drdIsSupported(char id) {
   return open_arm("drdIsSupported", id) != nullptr;
 }
 
-// Our arms are calibrated before they can be opened: nothing moves.
+// Our arms are calibrated before they can be opened.
 bool drdIsInitialized(char id) {
   return open_arm("drdIsInitialized", id) != nullptr;
 }
+// On a simulated arm, moves the tip to the middle of its workspace and holds it there, as such an
+// initialization does. The arm is initialized in any case, also if a hand holds it. A real arm is
+// not moved.
 int drdAutoInit(char id) {
-  return open_arm("drdAutoInit", id) ? 0 : -1;
+  OpenArm* arm = open_arm("drdAutoInit", id);
+  if (!arm) return -1;
+  const ArmFacts facts = arms::facts(arm->number);
+  if (!facts.simulated) return 0;
+  const bool ran = arm->regulator.running();
+  if (drdStart(id) != 0) return -1;
+  arm->init_started = !ran;
+  const Eigen::Vector3d middle_W =
+      (vector_of(facts.workspace_min) + vector_of(facts.workspace_max)) / 2;
+  if (move_and_wait(*arm, middle_W) != Arrival::kRunOver) return 0;
+  return fail("drdAutoInit", DHD_ERROR_COM, "the run of thimble exec has ended");
 }
 int drdCheckInit(char id) {
   return open_arm("drdCheckInit", id) ? 0 : -1;
@@ -129,6 +177,7 @@ int drdStart(char id) {
   if (!enable_force_if_unset(*arm)) {
     return fail("drdStart", DHD_ERROR_NOT_ENABLED, "force is disabled");
   }
+  arm->init_started = false;
   if (!arm->regulator.start(arm->number))
     return fail("drdStart", DHD_ERROR, "the thread cannot be created");
   return 0;
@@ -177,6 +226,7 @@ int drdRegulatePos(bool on, char id) {
   OpenArm* arm = open_arm("drdRegulatePos", id);
   if (!arm) return -1;
   arm->regulator.regulate(on);
+  arm->init_started = false;
   return 0;
 }
 // Our arms have no motors for wrist or gripper: accepted without effect.
@@ -246,22 +296,11 @@ int drdGetPosTrackParam(double* acceleration, double* speed, double* jerk, char 
 }
 
 int drdSetForceAndTorqueAndGripperForce(double* force, char id) {
-  constexpr const char* kFunction = "drdSetForceAndTorqueAndGripperForce";
-  OpenArm* arm = regulated_arm(kFunction, id);
-  if (!arm) return -1;
-  if (!force) return fail(kFunction, DHD_ERROR_NULL_ARGUMENT, "a pointer is null");
-  for (int i = 0; i < 7; ++i) {
-    if (!std::isfinite(force[i]))
-      return fail(kFunction, DHD_ERROR_INVALID, "a number is not finite");
-  }
-  const Eigen::Matrix3d R_WU = user_rotation(*arm).transpose();
-  const Eigen::Vector3d f_W = R_WU * Eigen::Vector3d(force[0], force[1], force[2]);
-  const Eigen::Vector3d torque_W = R_WU * Eigen::Vector3d(force[3], force[4], force[5]);
-  arm->regulator.set_free_force({.f_W = {f_W.x(), f_W.y(), f_W.z()},
-                                 .torque_W = {torque_W.x(), torque_W.y(), torque_W.z()},
-                                 .gripper = force[6]});
-  arms::wait_until_taken(arm->number);
-  return 0;
+  return set_free_force("drdSetForceAndTorqueAndGripperForce", id, force);
+}
+// Torques of the wrist's joints are counted like a torque: our arms have no motors for them.
+int drdSetForceAndWristJointTorquesAndGripperForce(double* force, char id) {
+  return set_free_force("drdSetForceAndWristJointTorquesAndGripperForce", id, force);
 }
 
 }  // extern "C"

@@ -74,6 +74,7 @@ int ask(const char* function, char id, const Eigen::Vector3d& f_U, const Eigen::
         double gripper) noexcept {
   OpenArm* arm = open_arm(function, id);
   if (!arm) return -1;
+  if (arm->init_started.exchange(false)) arm->regulator.stop();
   if (arm->regulator.running()) {
     if (arm->regulator.regulates()) {
       return fail(function, DHD_ERROR_DEVICE_IN_USE, "the arm is regulated");
@@ -122,6 +123,17 @@ int dhdSetForceAndGripperForce(double fx, double fy, double fz, double gripper, 
 int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx, double ty,
                                         double tz, double gripper, char id) {
   return ask("dhdSetForceAndTorqueAndGripperForce", id, {fx, fy, fz}, {tx, ty, tz}, gripper);
+}
+
+// Torques of the wrist's joints are counted like a torque: our arms have no motors for them.
+int dhdSetForceAndWristJointTorques(double fx, double fy, double fz, double t0, double t1,
+                                    double t2, char id) {
+  return ask("dhdSetForceAndWristJointTorques", id, {fx, fy, fz}, {t0, t1, t2}, 0);
+}
+int dhdSetForceAndWristJointTorquesAndGripperForce(double fx, double fy, double fz, double t0,
+                                                   double t1, double t2, double gripper, char id) {
+  return ask("dhdSetForceAndWristJointTorquesAndGripperForce", id, {fx, fy, fz}, {t0, t1, t2},
+             gripper);
 }
 
 int dhdSetVibration(double frequency, double amplitude, int, char id) {

@@ -1,6 +1,7 @@
 // Joints and encoders.
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "compat/dhd/forces.h"
@@ -42,6 +43,25 @@ bool solvable(const Eigen::Matrix3d& J) noexcept {
   return std::abs(J.determinant()) > kSingular * max_determinant;
 }
 
+// Returns whether joint angles are those of a state.
+bool same_angles(const double* angles, const ArmReading& reading) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!(std::abs(angles[i] - reading.q[i]) < kSameAngle)) return false;
+  }
+  return true;
+}
+
+// Finds the Jacobian in the world at joint angles; otherwise returns false and records an error.
+bool find_jacobian(const char* function, const OpenArm& arm, const double* angles,
+                   const ArmReading& reading, Eigen::Matrix3d& J) noexcept {
+  std::array<double, 9> rows = reading.J_WT;
+  const bool known = same_angles(angles, reading) ||
+                     arms::jacobian_at(arm.number, {angles[0], angles[1], angles[2]}, rows);
+  J = matrix_of(rows);
+  if (!known) fail(function, DHD_ERROR_GEOMETRY, "the arm cannot have these joint angles");
+  return known;
+}
+
 int not_available(const char* function, char id, const char* what) noexcept {
   return open_arm(function, id) ? fail(function, DHD_ERROR_NOT_AVAILABLE, what) : -1;
 }
@@ -65,6 +85,50 @@ int dhdGetJointAngles(double* angles, char id) {
   std::fill_n(angles, DHD_MAX_DOF, 0.0);
   std::copy_n(reading.q.begin(), 3, angles);
   std::copy_n(reading.gimbal.begin(), 3, angles + 3);
+  return 0;
+}
+
+int dhdGetDeltaEncoders(int* first, int* second, int* third, char id) {
+  ArmReading reading;
+  if (!arm_with_joints("dhdGetDeltaEncoders", id, first && second && third, reading)) return -1;
+  *first = reading.counts[0], *second = reading.counts[1], *third = reading.counts[2];
+  return 0;
+}
+
+int dhdGetDeltaJointAngles(double* first, double* second, double* third, char id) {
+  ArmReading reading;
+  if (!arm_with_joints("dhdGetDeltaJointAngles", id, first && second && third, reading)) return -1;
+  *first = reading.q[0], *second = reading.q[1], *third = reading.q[2];
+  return 0;
+}
+
+int dhdGetWristJointAngles(double* first, double* second, double* third, char id) {
+  constexpr const char* kFunction = "dhdGetWristJointAngles";
+  ArmReading reading;
+  const OpenArm* arm = arm_with_joints(kFunction, id, first && second && third, reading);
+  if (!arm) return -1;
+  if (!arms::facts(arm->number).has_gimbal) {
+    return fail(kFunction, DHD_ERROR_NOT_AVAILABLE, "the arm does not measure its wrist");
+  }
+  *first = static_cast<double>(reading.gimbal[0]);
+  *second = static_cast<double>(reading.gimbal[1]);
+  *third = static_cast<double>(reading.gimbal[2]);
+  return 0;
+}
+
+int dhdDeltaJointAnglesToJacobian(double first, double second, double third, double rows[3][3],
+                                  char id) {
+  constexpr const char* kFunction = "dhdDeltaJointAnglesToJacobian";
+  ArmReading reading;
+  const OpenArm* arm = arm_with_joints(kFunction, id, rows, reading);
+  if (!arm) return -1;
+  const std::array<double, 3> angles{first, second, third};
+  Eigen::Matrix3d J;
+  if (!find_jacobian(kFunction, *arm, angles.data(), reading, J)) return -1;
+  J = user_rotation(*arm) * J;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) rows[i][j] = J(i, j);
+  }
   return 0;
 }
 
@@ -119,6 +183,9 @@ int dhdSetJointTorques(double* torques, unsigned char mask, char id) {
 int dhdGetEncVelocities(double*, char id) {
   return not_available("dhdGetEncVelocities", id, "not available; use dhdGetJointVelocities");
 }
+int dhdWristJointAnglesToJacobian(double, double, double, double (*)[3], char id) {
+  return not_available("dhdWristJointAnglesToJacobian", id, "the wrist has no motors");
+}
 int dhdGetWristJacobian(double (*)[3], char id) {
   return not_available("dhdGetWristJacobian", id, "the wrist has no motors");
 }
@@ -150,13 +217,9 @@ int dhdJointAnglesToGravityJointTorques(double* angles, double* torques, unsigne
   const OpenArm* arm = arm_with_joints(kFunction, id, angles && torques, reading);
   if (!arm) return -1;
   const double mass = arm->effector_mass;
-  for (std::size_t i = 0; mass > 0 && i < 3; ++i) {
-    if (!(std::abs(angles[i] - reading.q[i]) < kSameAngle)) {
-      return fail(kFunction, DHD_ERROR_NOT_AVAILABLE, "available only at the present joint angles");
-    }
-  }
-  const Eigen::Vector3d tau =
-      matrix_of(reading.J_WT).transpose() * Eigen::Vector3d(0, 0, mass * kGravity);
+  Eigen::Matrix3d J = Eigen::Matrix3d::Zero();
+  if (mass > 0 && !find_jacobian(kFunction, *arm, angles, reading, J)) return -1;
+  const Eigen::Vector3d tau = J.transpose() * Eigen::Vector3d(0, 0, mass * kGravity);
   for (int i = 0; i < DHD_MAX_DOF; ++i) {
     if ((mask >> i) & 1) torques[i] = i < 3 ? tau[i] : 0;
   }

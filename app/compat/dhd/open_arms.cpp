@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <string>
+#include <string_view>
 
 #include "compat/dhd/last_error.h"
 #include "drdc.h"
@@ -38,6 +39,13 @@ void reset_settings(OpenArm& arm) noexcept {
   arm.watchdog = 0;
   arm.vibration_frequency = arm.vibration_amplitude = 0;
   arm.forces = 0;
+  arm.stored_integral_gain = 0;
+  arm.init_started = false;
+  arm.regulator.reset_settings();
+  {
+    const std::lock_guard lock(arm.stored_mutex);
+    arm.stored_bounds = {};
+  }
   const std::lock_guard lock(arm.gap_mutex);
   arm.gap_time = arm.gap = arm.gap_speed = 0;
   arm.counted_forces = 0;
@@ -80,7 +88,8 @@ int open_number(const char* function, int number) noexcept {
   }
   OpenArm& arm = table().arms[static_cast<std::size_t>(number)];
   if (!arm.open) {
-    const std::string wrong = arms::open(number, "DHD");
+    const bool by_drd = std::string_view(function).starts_with("drd");
+    const std::string wrong = arms::open(number, by_drd ? "DRD" : kApi);
     if (!wrong.empty()) return fail(function, DHD_ERROR_DEVICE_NOT_READY, wrong.c_str());
     reset_settings(arm);
     arm.open = true;

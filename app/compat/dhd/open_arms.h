@@ -12,6 +12,9 @@
 
 namespace thimble::compat::dhd {
 
+/// Name of these libraries for the report.
+inline constexpr const char* kApi = "DHD";
+
 /// State of an arm's force: on, off, or never set by the program.
 enum class ForceSwitch : std::uint8_t {
   kUnset,  ///< Never set by the program: its first force enables it.
@@ -27,6 +30,17 @@ enum ForceOffCause : int {
   kOffBySoftware = 4,
   kOffByPull = 5,
 };
+
+/// Motions with bounds that are only stored: of wrist, gripper and single encoders.
+enum class StoredMotion : std::uint8_t {
+  kRotMove,
+  kRotTrack,
+  kGripMove,
+  kGripTrack,
+  kEncMove,
+  kEncTrack
+};
+inline constexpr std::size_t kStoredMotions = 6;  ///< Number of those.
 
 /// An arm that a program opened, with the program's settings. Any thread may read and set its
 /// numbers.
@@ -53,7 +67,13 @@ struct OpenArm {
   double gap_time = 0, gap = 0, gap_speed = 0;  ///< s, m, m/s: last state of the gripper.
   std::uint64_t counted_forces = 0;             ///< Value of `forces` at the last dhdGetComFreq.
   std::int64_t counted_ns = 0;                  ///< Time of that call.
-  Regulator regulator;                          ///< For the functions drd...
+  /// The regulation runs because of drdAutoInit: a program's force ends it.
+  std::atomic<bool> init_started{false};
+  Regulator regulator;      ///< For the functions drd...
+  std::mutex stored_mutex;  ///< For the array below.
+  /// Bounds of motions that our arms cannot make; only stored and returned.
+  std::array<PathBounds, kStoredMotions> stored_bounds{};
+  std::atomic<double> stored_integral_gain{0};  ///< As above: regulation has no integral part.
 };
 
 /// Returns an open arm. If `id` names none, returns null and records an error.

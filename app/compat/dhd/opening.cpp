@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "compat/core/kept_text.h"
 #include "compat/dhd/last_error.h"
 #include "compat/dhd/open_arms.h"
 #include "drdc.h"
@@ -31,6 +32,14 @@ bool has(const char* function, char id, bool ArmFacts::*what) noexcept {
   return arm && arms::facts(arm->number).*what;
 }
 
+// Opens the first arm that no program has open.
+int open_first(const char* function) noexcept {
+  for (int number = 0; number < arms::count(); ++number) {
+    if (!arms::is_open(number) && !arms::is_taken(number)) return open_number(function, number);
+  }
+  return open_number(function, 0);
+}
+
 }  // namespace
 
 extern "C" {
@@ -38,10 +47,12 @@ extern "C" {
 void dhdEnableSimulator(bool) {}  // `thimble exec` decides whether arms are simulated
 
 int dhdGetDeviceCount(void) {
-  return arms::count();
+  return arms::listed(kApi);
 }
 int dhdGetAvailableCount(void) {
-  return arms::count();
+  int available = 0;
+  for (int number = 0; number < arms::listed(kApi); ++number) available += !arms::is_taken(number);
+  return available;
 }
 int dhdSetDevice(char id) {
   return choose_arm("dhdSetDevice", id);
@@ -68,10 +79,7 @@ int dhdGetSerialNumber(unsigned short* serial, char id) {
 }
 
 int dhdOpen(void) {
-  for (int number = 0; number < arms::count(); ++number) {
-    if (!arms::is_open(number)) return open_number("dhdOpen", number);
-  }
-  return open_number("dhdOpen", 0);
+  return open_first("dhdOpen");
 }
 
 int dhdOpenType(int type) {
@@ -92,7 +100,7 @@ int dhdOpenID(char index) {
   return open_number("dhdOpenID", static_cast<signed char>(index));
 }
 int drdOpen(void) {
-  return dhdOpen();
+  return open_first("drdOpen");
 }
 int drdOpenID(char index) {
   return open_number("drdOpenID", static_cast<signed char>(index));
@@ -111,7 +119,7 @@ int dhdGetSystemType(char id) {
 
 const char* dhdGetSystemName(char id) {
   const OpenArm* arm = open_arm("dhdGetSystemName", id);
-  return arm ? arms::facts(arm->number).name.data() : nullptr;
+  return arm ? kept_text(arms::facts(arm->number).name.data()) : nullptr;
 }
 
 void dhdGetSDKVersion(int* major, int* minor, int* release, int* revision) {
@@ -133,7 +141,7 @@ int dhdGetStatus(int status[DHD_MAX_STATUS], char id) {
   ArmReading reading;
   if (!read_arm("dhdGetStatus", *arm, reading)) return -1;
   using thimble::driver::Fault;
-  const ArmFacts& facts = arms::facts(arm->number);
+  const ArmFacts facts = arms::facts(arm->number);
   const bool faulty = reading.fault != Fault::kNone;
   const bool on = arm->force == ForceSwitch::kOn && !faulty;
   const bool connected = reading.link != thimble::driver::LinkState::kLost;

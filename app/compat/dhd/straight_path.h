@@ -13,6 +13,14 @@ struct PathBounds {
   double jerk = 20;         ///< Maximum jerk.
 };
 
+/// Returns whether all bounds are finite and positive.
+inline bool is_valid(const PathBounds& bounds) noexcept {
+  for (const double value : {bounds.acceleration, bounds.speed, bounds.jerk}) {
+    if (!(std::isfinite(value) && value > 0)) return false;
+  }
+  return true;
+}
+
 /// A motion from rest to rest along a straight line, by the polynomial of fifth degree with zero
 /// speed and acceleration at both ends (minimum jerk). Its duration is the shortest within the
 /// bounds. Real-time: safe.

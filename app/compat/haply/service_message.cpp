@@ -153,8 +153,11 @@ json grip_of(const ReportedArm& arm, std::size_t number) {
       {"buttons",
        {{"a", (buttons & 1U) != 0}, {"b", (buttons & 2U) != 0}, {"c", (buttons & 4U) != 0}}}};
   if (arm.facts.has_orientation) state["orientation"] = to_json(turned_B(arm.reading));
+  constexpr double kFull = 1;  // our arms have no battery
+  state["battery_level"] = kFull;
   return {{"device_id", four_digits(kGripNumber + static_cast<unsigned>(number) + 1)},
-          {"state", std::move(state)}};
+          {"state", std::move(state)},
+          {"status", {{"awake", true}, {"connected", arm.ready}, {"ready", arm.ready}}}};
 }
 
 }  // namespace

@@ -80,18 +80,47 @@ void report_force_errors(HHD handle, Device& device) noexcept {
     }
   }
   if (now.tick == device.frame.last.tick) return;
-  if (now.cuts.limited && !device.force_clamping) record_error(HD_EXCEEDED_MAX_FORCE, handle);
-  if (now.cuts.rise_limited) record_error(HD_EXCEEDED_MAX_FORCE_IMPULSE, handle);
+  if (now.cuts.limited && device.force_limit && !device.force_clamping)
+    record_error(HD_EXCEEDED_MAX_FORCE, handle);
+  if (now.cuts.rise_limited && device.impulse_check)
+    record_error(HD_EXCEEDED_MAX_FORCE_IMPULSE, handle);
   constexpr double kWarm = 0.8;  // of the winding's limit; the gate's own warning
   const bool warm = *std::max_element(now.heat.begin(), now.heat.end()) >= kWarm;
   if (warm && !device.warm_reported) record_error(HD_WARM_MOTORS, handle);
   device.warm_reported = warm;
 }
 
+/// Returns the length of a vector; NaN if a component is NaN.
+double length_of(const std::array<double, 3>& v) noexcept {
+  return std::hypot(v[0], v[1], v[2]);
+}
+
+/// Limits the change of the force since the last frame to the program's impulse limit. A weaker
+/// force is never delayed. Returns whether the limit was exceeded.
+bool limit_impulse(const Device& device, std::array<double, 3>& f_W) noexcept {
+  if (!device.impulse_check || !(device.impulse_limit > 0)) return false;
+  std::array<double, 3> change{};
+  for (std::size_t i = 0; i < 3; ++i) change[i] = f_W[i] - device.f_sent_W[i];
+  const std::int64_t passed_ns = device.frame.now.time_ns - device.sent_ns;
+  const double passed_ms = std::max(1e-6 * static_cast<double>(passed_ns), 1.0);
+  const double max_change = device.impulse_limit * passed_ms;
+  const double length = length_of(change);
+  // A force that is not finite goes to the gate unchanged.
+  if (!(length > max_change) || !std::isfinite(length)) return false;
+  if (length_of(f_W) < length_of(device.f_sent_W)) return true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    f_W[i] = device.f_sent_W[i] + change[i] * max_change / length;
+  }
+  return true;
+}
+
 /// Requests a device's force, after HDAPI's clamping and ramping.
 void send(HHD handle, Device& device) noexcept {
-  ForceRequest asked{.f_W = device.frame.f_asked_W, .torque_W = device.frame.torque_asked_W};
-  const double length = std::hypot(asked.f_W[0], asked.f_W[1], asked.f_W[2]);
+  const ForceCommand& command = device.sent;
+  ForceRequest asked{.f_W = command.f_W};
+  // Both are torques that arms with three motors cannot exert; they are only counted.
+  for (std::size_t i = 0; i < 3; ++i) asked.torque_W[i] = command.torque_W[i] + command.gimbal[i];
+  const double length = length_of(asked.f_W);
   double max_force = length;
   if (device.force_clamping)
     max_force = std::min(max_force, arms::facts(static_cast<int>(handle)).force_max);
@@ -103,12 +132,23 @@ void send(HHD handle, Device& device) noexcept {
   if (max_force < length) {
     for (double& f : asked.f_W) f *= max_force / length;
   }
+  if (limit_impulse(device, asked.f_W)) record_error(HD_EXCEEDED_MAX_FORCE_IMPULSE, handle);
+  device.f_sent_W = asked.f_W;
+  device.sent_ns = device.frame.now.time_ns;
   arms::ask_force(static_cast<int>(handle), asked);
 }
 
+/// Ends a frame. Its command replaces that of the frame before. A frame without a command requests
+/// no force, except if another frame of the same tick has a command: that one stays in force.
 void end_frame(HHD handle, Device& device) noexcept {
-  device.frame.open = false;
-  if (scheduler_stopped()) device.frame.f_asked_W = {};
+  Frame& frame = device.frame;
+  frame.open = false;
+  const bool keeps = !frame.commanded && device.framed.same_tick(device.commanded);
+  if (frame.commanded) device.commanded = device.framed;
+  if (!keeps) device.sent = frame.command;
+  if (scheduler_stopped()) device.sent = {};
+  // Outside of a frame, the program reads the command that is in force.
+  frame.command = device.sent;
   if (device.force_output) send(handle, device);
 }
 
@@ -137,6 +177,22 @@ Device* current_open(const char* function) noexcept {
   if (is_open(current)) return &devices().all[current];
   record_wrong_call(HD_BAD_HANDLE, function, "no arm is open and current (hdMakeCurrentDevice)");
   return nullptr;
+}
+
+void remove_command(HHD device) noexcept {
+  Device& own = devices().all[device];
+  own.frame.command = own.sent = {};
+  own.frame.commanded = false;
+  own.commanded = {};
+  own.f_sent_W = {};
+  arms::ask_force(static_cast<int>(device), {});
+}
+
+void apply_velocity_limit(HHD device) noexcept {
+  constexpr double kMetres = 1e-3;  // per mm
+  const Device& own = devices().all[device];
+  arms::set_speed_limit(static_cast<int>(device),
+                        own.velocity_check ? own.velocity_limit * kMetres : 0.0);
 }
 
 ArmReading seen(HHD device) noexcept {
@@ -243,14 +299,17 @@ void hdBeginFrame(HHD handle) {
   }
   ArmReading newest;
   if (!arms::read(static_cast<int>(handle), newest)) newest = frame.now;
-  if (device.one_frame_limit && device.framed_tick == newest.tick + 1) {
+  const FrameTime time{.tick = newest.tick + 1, .run = scheduler_run()};
+  if (device.one_frame_limit && time.same_tick(device.framed)) {
     record_wrong_call(HD_ILLEGAL_BEGIN, __func__, "more than one frame in a tick");
     return;
   }
-  device.framed_tick = newest.tick + 1;
+  device.framed = time;
   // Two frames in one tick show the same state; the previous frame is then that of the tick before.
   if (newest.tick != frame.now.tick) frame.last = frame.now;
   frame.now = newest;
+  frame.command = {};
+  frame.commanded = false;
   frame.open = true;
   frame.owner = std::this_thread::get_id();
   report_force_errors(handle, device);
@@ -265,6 +324,10 @@ void hdEndFrame(HHD handle) {
   Device& device = devices().all[handle];
   if (!device.frame.open) {
     record_wrong_call(HD_ILLEGAL_END, __func__, "hdEndFrame was called without hdBeginFrame");
+    return;
+  }
+  if (device.frame.owner != std::this_thread::get_id()) {
+    record_wrong_call(HD_ILLEGAL_END, __func__, "another thread began the frame");
     return;
   }
   end_frame(handle, device);

@@ -12,14 +12,31 @@
 
 namespace thimble::compat::hd {
 
+/// The forces and torques that a program sets. Zero at the start of each frame.
+struct ForceCommand {
+  std::array<double, 3> f_W{};       ///< N
+  std::array<double, 3> torque_W{};  ///< N m; of the stylus.
+  std::array<double, 3> gimbal{};    ///< N m; of the gimbal's axes.
+};
+
 /// The state of an arm shown in a frame, and the requests made in it.
 struct Frame {
-  ArmReading now;                          ///< State at the start of the frame.
-  ArmReading last;                         ///< State of the previous frame.
-  std::array<double, 3> f_asked_W{};       ///< N; valid until it is set again.
-  std::array<double, 3> torque_asked_W{};  ///< N m; likewise.
-  bool open = false;                       ///< The frame was begun and not ended.
-  std::thread::id owner{};                 ///< The thread that began it.
+  ArmReading now;           ///< State at the start of the frame.
+  ArmReading last;          ///< State of the previous frame.
+  ForceCommand command;     ///< Command of this frame, or of the last ended one.
+  bool commanded = false;   ///< The program has set a force or torque in it.
+  bool open = false;        ///< The frame was begun and not ended.
+  std::thread::id owner{};  ///< The thread that began it.
+};
+
+/// A moment of a frame: the arm's tick that it shows, and the run of the scheduler's callbacks in
+/// which it was. Two frames are of one tick if they share either.
+struct FrameTime {
+  std::uint64_t tick = 0;  ///< Number of the arm's tick plus one; 0: none yet.
+  std::uint64_t run = 0;   ///< Number of the scheduler's run; 0: on another thread.
+  bool same_tick(const FrameTime& other) const noexcept {
+    return (tick != 0 && tick == other.tick) || (run != 0 && run == other.run);
+  }
 };
 
 /// One arm that a program has opened by HDAPI. Its handle is the arm's number.
@@ -28,13 +45,18 @@ struct Device {
   Frame frame;
   bool force_output = false, force_clamping = false, force_ramping = false;
   bool force_limit = true, one_frame_limit = false;
+  bool impulse_check = true, velocity_check = true;
   double ramping_rate = 1000;                ///< N/s
   double velocity_limit = 0;                 ///< mm/s; 0: the gate's
-  double impulse_limit = 0;                  ///< N/ms; only stored and returned
+  double impulse_limit = 0;                  ///< N/ms; 0: the gate's
   std::array<double, 4> light{};             ///< only stored and returned
   std::array<double, 3> joint_references{};  ///< only stored and returned
   std::int64_t enabled_ns = 0;               ///< Time of the last enabling, arm's clock.
-  std::uint64_t framed_tick = 0;             ///< Tick of the newest frame, plus one.
+  ForceCommand sent;                         ///< Command of the last ended frame.
+  std::array<double, 3> f_sent_W{};          ///< N; its force after the program's limits.
+  std::int64_t sent_ns = 0;                  ///< Its time, arm's clock.
+  FrameTime framed;                          ///< Time of the newest frame.
+  FrameTime commanded;                       ///< Time of the newest frame with a command.
   driver::Fault reported_fault = driver::Fault::kNone;
   driver::LinkState link_reported = driver::LinkState::kConnected;
   bool warm_reported = false;
@@ -67,6 +89,16 @@ ArmReading seen(HHD device) noexcept;
 /// Returns whether this thread belongs to a scheduler that one of its own callbacks stopped: frames
 /// that it ends request no force.
 bool scheduler_stopped() noexcept;
+
+/// Returns the number of the scheduler's run that this thread executes; 0 on other threads.
+std::uint64_t scheduler_run() noexcept;
+
+/// Removes the command of an arm, and requests no force. Lock required.
+void remove_command(HHD device) noexcept;
+
+/// Applies the speed limit of the program to an arm, or only the gate's if its check is off. Lock
+/// required.
+void apply_velocity_limit(HHD device) noexcept;
 
 /// Ends a frame that this thread left open after its callbacks, with HD_FRAME_ERROR.
 void end_open_frames() noexcept;

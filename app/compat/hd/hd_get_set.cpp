@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "compat/core/arm_access.h"
+#include "compat/core/kept_text.h"
 #include "compat/hd/hd_device.h"
 #include "compat/hd/hd_errors.h"
 #include "compat/hd/hd_parameters.h"
@@ -56,7 +57,8 @@ void get(const char* function, HDenum number, T* values) noexcept {
   const ArmReading state = parameter->last ? device->frame.last : seen(handle);
   Numbers numbers{};
   parameter->get({handle, *device, arms::facts(static_cast<int>(handle)), state}, numbers);
-  for (std::size_t i = 0; i < parameter->count; ++i) values[i] = as<T>(numbers[i]);
+  const std::size_t count = count_of(*parameter, arms::facts(static_cast<int>(handle)));
+  for (std::size_t i = 0; i < count; ++i) values[i] = as<T>(numbers[i]);
 }
 
 template <class T>
@@ -67,11 +69,12 @@ void set(const char* function, HDenum number, const T* values) noexcept {
     record_wrong_call(HD_INVALID_ENUM, function, "this parameter cannot be set");
     return;
   }
-  Numbers numbers{};
-  for (std::size_t i = 0; i < parameter->count; ++i) numbers[i] = static_cast<double>(values[i]);
   const std::lock_guard lock(devices().mutex);
   Device* device = current_open(function);
   if (device == nullptr) return;
+  Numbers numbers{};
+  const std::size_t count = count_of(*parameter, arms::facts(static_cast<int>(current_device())));
+  for (std::size_t i = 0; i < count; ++i) numbers[i] = static_cast<double>(values[i]);
   const HDerror error = parameter->set(current_device(), *device, numbers);
   if (error != HD_SUCCESS) record_wrong_call(error, function, hdGetErrorString(error));
 }
@@ -88,6 +91,10 @@ bool Device::*capability_of(HDenum number) noexcept {
       return &Device::force_limit;
     case HD_ONE_FRAME_LIMIT:
       return &Device::one_frame_limit;
+    case HD_SOFTWARE_VELOCITY_LIMIT:
+      return &Device::velocity_check;
+    case HD_SOFTWARE_FORCE_IMPULSE_LIMIT:
+      return &Device::impulse_check;
     default:
       return nullptr;
   }
@@ -103,13 +110,11 @@ void switch_capability(const char* function, HDenum number, bool on) noexcept {
   Device* device = current_open(function);
   if (device == nullptr) return;
   device->*capability = on;
-  if (number != HD_FORCE_OUTPUT) return;
   const HHD handle = current_device();
+  if (number == HD_SOFTWARE_VELOCITY_LIMIT) apply_velocity_limit(handle);
+  if (number != HD_FORCE_OUTPUT) return;
   device->enabled_ns = seen(handle).time_ns;
-  if (!on) {
-    device->frame.f_asked_W = {};
-    arms::ask_force(static_cast<int>(handle), {});
-  }
+  if (!on) remove_command(handle);
   arms::enable_force(static_cast<int>(handle), on);
 }
 
@@ -163,11 +168,12 @@ HDstring hdGetString(HDenum parameter) {
     return "";
   }
   if (parameter == HD_DEVICE_VENDOR) return "Thimble";
-  if (parameter != HD_DEVICE_MODEL_TYPE) return THIMBLE_VERSION;
+  const bool serial = parameter == HD_DEVICE_SERIAL_NUMBER;
+  if (parameter != HD_DEVICE_MODEL_TYPE && !serial) return THIMBLE_VERSION;
   const std::lock_guard lock(devices().mutex);
   if (current_open(__func__) == nullptr) return "";
-  // Its address is constant while the arm is open.
-  return arms::facts(static_cast<int>(current_device())).name.data();
+  const ArmFacts facts = arms::facts(static_cast<int>(current_device()));
+  return kept_text(serial ? facts.serial.data() : facts.name.data());
 }
 
 void hdSetBooleanv(HDenum parameter, const HDboolean* values) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "compat/core/arm_access.h"
 
@@ -19,12 +20,15 @@ void put_one(double value, Numbers& to) {
   to[0] = value;
 }
 
-/// Returns the joint torques of the force at the tip, N mm: tau = J^T f.
-std::array<double, 3> joint_torques(const ArmReading& state) {
+/// All arms here have three motors, for the force at the tip.
+constexpr std::size_t kMotors = 3;
+
+/// Returns the joint torques of a force at the tip, N mm: tau = J^T f.
+std::array<double, 3> joint_torques(const ArmReading& state, const std::array<double, 3>& f_W) {
   std::array<double, 3> tau{};
   for (std::size_t joint = 0; joint < 3; ++joint) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      tau[joint] += kMillimetres * state.J_WT[3 * axis + joint] * state.f_sent_W[axis];
+      tau[joint] += kMillimetres * state.J_WT[3 * axis + joint] * f_W[axis];
     }
   }
   return tau;
@@ -99,16 +103,22 @@ void get_gimbal(const Look& look, Numbers& to) {
   for (std::size_t i = 0; i < 3; ++i) to[i] = static_cast<double>(look.state.gimbal[i]);
 }
 void get_force(const Look& look, Numbers& to) {
-  put(to_hd(look.device.frame.f_asked_W), to);
+  put(to_hd(look.device.frame.command.f_W), to);
 }
 void get_force_sent(const Look& look, Numbers& to) {
   put(to_hd(look.state.f_sent_W), to);
 }
 void get_torque(const Look& look, Numbers& to) {
-  put(to_hd(look.device.frame.torque_asked_W), to, kMillimetres);
+  put(to_hd(look.device.frame.command.torque_W), to, kMillimetres);
 }
 void get_joint_torque(const Look& look, Numbers& to) {
-  put(joint_torques(look.state), to);
+  put(joint_torques(look.state, look.device.frame.command.f_W), to);
+}
+void get_joint_torque_sent(const Look& look, Numbers& to) {
+  put(joint_torques(look.state, look.state.f_sent_W), to);
+}
+void get_gimbal_torque(const Look& look, Numbers& to) {
+  put(look.device.frame.command.gimbal, to, kMillimetres);
 }
 void get_nothing(const Look&, Numbers&) {}
 void get_true(const Look&, Numbers& to) {
@@ -127,7 +137,7 @@ void get_input_dof(const Look& look, Numbers& to) {
   put_one(look.facts.has_orientation ? 6 : 3, to);
 }
 void get_output_dof(const Look&, Numbers& to) {
-  put_one(3, to);
+  put_one(kMotors, to);
 }
 void get_calibration_style(const Look&, Numbers& to) {
   put_one(HD_CALIBRATION_AUTO, to);
@@ -162,7 +172,9 @@ void get_velocity_limit(const Look& look, Numbers& to) {
   put_one(own > 0 ? own : kMillimetres * look.facts.speed_max, to);
 }
 void get_impulse_limit(const Look& look, Numbers& to) {
-  put_one(look.device.impulse_limit, to);
+  constexpr double kMilliseconds = 1e3;  // per s
+  const double own = look.device.impulse_limit;
+  put_one(own > 0 ? own : look.facts.rise_max / kMilliseconds, to);
 }
 void get_ramping_rate(const Look& look, Numbers& to) {
   put_one(look.device.ramping_rate, to);
@@ -176,27 +188,41 @@ void get_joint_references(const Look& look, Numbers& to) {
 
 // Writers of the parameters.
 
+/// Returns the command of the open frame of this thread; null without one.
+ForceCommand* command_of(Device& device) {
+  Frame& frame = device.frame;
+  if (!frame.open || frame.owner != std::this_thread::get_id()) return nullptr;
+  frame.commanded = true;
+  return &frame.command;
+}
+
 HDerror set_force(HHD, Device& device, const Numbers& from) {
-  if (!device.frame.open) return HD_FRAME_ERROR;
-  device.frame.f_asked_W = from_hd(first_three(from));
+  ForceCommand* command = command_of(device);
+  if (command == nullptr) return HD_FRAME_ERROR;
+  command->f_W = from_hd(first_three(from));
   return HD_SUCCESS;
 }
 HDerror set_torque(HHD, Device& device, const Numbers& from) {
-  if (!device.frame.open) return HD_FRAME_ERROR;
-  device.frame.torque_asked_W = from_hd(first_three(from, 1 / kMillimetres));
+  ForceCommand* command = command_of(device);
+  if (command == nullptr) return HD_FRAME_ERROR;
+  command->torque_W = from_hd(first_three(from, 1 / kMillimetres));
   return HD_SUCCESS;
 }
 HDerror set_joint_torque(HHD, Device& device, const Numbers& from) {
-  if (!device.frame.open) return HD_FRAME_ERROR;
+  ForceCommand* command = command_of(device);
+  if (command == nullptr) return HD_FRAME_ERROR;
   std::array<double, 3> f{};
   const auto tau = first_three(from, 1 / kMillimetres);
-  if (!force_of_torques(device.frame.now.J_WT, tau, f)) return HD_FORCE_ERROR;
-  device.frame.f_asked_W = f;
-  return HD_SUCCESS;
+  const bool solved = force_of_torques(device.frame.now.J_WT, tau, f);
+  command->f_W = f;  // none if there is no force for these torques
+  return solved ? HD_SUCCESS : HD_FORCE_ERROR;
 }
 /// Our arms have no gimbal motors: stored as a torque, which is reported and ignored.
-HDerror set_gimbal_torque(HHD handle, Device& device, const Numbers& from) {
-  return set_torque(handle, device, from);
+HDerror set_gimbal_torque(HHD, Device& device, const Numbers& from) {
+  ForceCommand* command = command_of(device);
+  if (command == nullptr) return HD_FRAME_ERROR;
+  command->gimbal = first_three(from, 1 / kMillimetres);
+  return HD_SUCCESS;
 }
 /// Motors are only controlled through the gate.
 HDerror set_motors(HHD, Device&, const Numbers&) {
@@ -205,7 +231,7 @@ HDerror set_motors(HHD, Device&, const Numbers&) {
 HDerror set_velocity_limit(HHD handle, Device& device, const Numbers& from) {
   if (!(from[0] > 0)) return HD_INVALID_VALUE;
   device.velocity_limit = from[0];
-  arms::set_speed_limit(static_cast<int>(handle), from[0] / kMillimetres);
+  apply_velocity_limit(handle);
   return HD_SUCCESS;
 }
 HDerror set_impulse_limit(HHD, Device& device, const Numbers& from) {
@@ -268,7 +294,7 @@ constexpr Parameter kParameters[] = {
     {HD_NOMINAL_MAX_DAMPING, 1, false, get_damping},
     {HD_NOMINAL_MAX_FORCE, 1, false, get_force_max},
     {HD_NOMINAL_MAX_CONTINUOUS_FORCE, 1, false, get_force_continuous},
-    {HD_MOTOR_TEMPERATURE, 6, false, get_heat},
+    {HD_MOTOR_TEMPERATURE, kPerMotor, false, get_heat},
     {HD_SOFTWARE_VELOCITY_LIMIT, 1, false, get_velocity_limit, set_velocity_limit},
     {HD_SOFTWARE_FORCE_IMPULSE_LIMIT, 1, false, get_impulse_limit, set_impulse_limit},
     {HD_FORCE_RAMPING_RATE, 1, false, get_ramping_rate, set_ramping_rate},
@@ -280,13 +306,13 @@ constexpr Parameter kParameters[] = {
     {HD_CURRENT_TORQUE, 3, false, get_torque, set_torque},
     {HD_JOINT_ANGLE_REFERENCES, 3, false, get_joint_references, set_joint_references},
     {HD_CURRENT_JOINT_TORQUE, 3, false, get_joint_torque, set_joint_torque},
-    {HD_CURRENT_GIMBAL_TORQUE, 3, false, get_torque, set_gimbal_torque},
-    {HD_CURRENT_MOTOR_DAC_VALUES, 6, false, get_nothing, set_motors},
+    {HD_CURRENT_GIMBAL_TORQUE, 3, false, get_gimbal_torque, set_gimbal_torque},
+    {HD_CURRENT_MOTOR_DAC_VALUES, kPerMotor, false, get_nothing, set_motors},
     {HD_LAST_FORCE, 3, kLast, get_force_sent},
     {HD_LAST_TORQUE, 3, kLast, get_nothing},
-    {HD_LAST_JOINT_TORQUE, 3, kLast, get_joint_torque},
+    {HD_LAST_JOINT_TORQUE, 3, kLast, get_joint_torque_sent},
     {HD_LAST_GIMBAL_TORQUE, 3, kLast, get_nothing},
-    {HD_LAST_MOTOR_DAC_VALUES, 6, kLast, get_nothing},
+    {HD_LAST_MOTOR_DAC_VALUES, kPerMotor, kLast, get_nothing},
     {HD_USER_STATUS_LIGHT, 1, false, get_light, set_light},
 };
 // clang-format on
@@ -299,6 +325,10 @@ const Parameter* find_parameter(HDenum number) noexcept {
   return found == std::end(kParameters) ? nullptr : found;
 }
 
+std::size_t count_of(const Parameter& parameter, const ArmFacts&) noexcept {
+  return parameter.count == kPerMotor ? kMotors : parameter.count;
+}
+
 std::span<const Parameter> parameters() noexcept {
   return kParameters;
 }
@@ -306,7 +336,7 @@ std::span<const Parameter> parameters() noexcept {
 bool is_text(HDenum number) noexcept {
   return number == HD_VERSION || number == HD_DEVICE_MODEL_TYPE ||
          number == HD_DEVICE_DRIVER_VERSION || number == HD_DEVICE_VENDOR ||
-         number == HD_DEVICE_FIRMWARE_VERSION;
+         number == HD_DEVICE_SERIAL_NUMBER || number == HD_DEVICE_FIRMWARE_VERSION;
 }
 
 std::array<double, 3> to_hd(const std::array<double, 3>& v_W) noexcept {

@@ -12,6 +12,8 @@ namespace thimble::compat::hd {
 /// The maximum number of values of a parameter.
 inline constexpr std::size_t kNumbersMax = 36;
 using Numbers = std::array<double, kNumbersMax>;
+/// Count of a parameter with one value for each motor: HD_OUTPUT_DOF values.
+inline constexpr std::size_t kPerMotor = 0;
 
 /// The sources of a parameter's values.
 struct Look {
@@ -24,7 +26,7 @@ struct Look {
 /// One numeric parameter of HDAPI, in HDAPI's units and axes.
 struct Parameter {
   HDenum number;                                         ///< Its constant.
-  std::size_t count;                                     ///< Number of its values.
+  std::size_t count;                                     ///< Number of its values, or kPerMotor.
   bool last = false;                                     ///< Uses the previous frame.
   void (*get)(const Look& look, Numbers& to) = nullptr;  ///< Null: it is not readable.
   /// Sets it; returns HD_SUCCESS or the error. Null: it is not writable.
@@ -35,6 +37,8 @@ struct Parameter {
 const Parameter* find_parameter(HDenum number) noexcept;
 /// Returns all numeric parameters.
 std::span<const Parameter> parameters() noexcept;
+/// Returns the number of values of a parameter for an arm.
+std::size_t count_of(const Parameter& parameter, const ArmFacts& facts) noexcept;
 /// Returns whether a constant names a text.
 bool is_text(HDenum number) noexcept;
 

@@ -47,6 +47,7 @@ struct Scheduler {
 };
 
 thread_local bool on_scheduler_thread = false;
+thread_local std::uint64_t own_run = 0;  // number of the run that this thread executes
 thread_local const std::atomic<bool>* own_stop = nullptr;  // flag of the scheduler of this thread
 
 // Never destroyed: the thread may run while the program exits.
@@ -85,6 +86,8 @@ HDSchedulerHandle add(Scheduler& s, HDSchedulerCallback call, void* data, HDusho
 /// Runs each callback once. Callbacks may schedule and unschedule callbacks. If one stops the
 /// scheduler, none of the others runs.
 void run_callbacks(Scheduler& s) {
+  static std::atomic<std::uint64_t> runs{0};
+  own_run = runs.fetch_add(1) + 1;
   std::vector<HDSchedulerHandle> due;
   {
     const std::lock_guard lock(s.mutex);
@@ -123,6 +126,16 @@ int pacing_arm() {
   return -1;
 }
 
+/// Lets the other open arms whose ticks wait for the program make as many ticks as the arm that
+/// sets the pace.
+void advance_others(int pacing, std::uint64_t ticks) {
+  for (int arm = 0; arm < kArmsMax; ++arm) {
+    ArmReading reading;
+    if (arm == pacing || !arms::is_paced(arm) || !arms::read(arm, reading)) continue;
+    arms::wait_for_tick(arm, reading.tick + ticks - 1);
+  }
+}
+
 void loop(Scheduler& s, const std::atomic<bool>& stop) {
   on_scheduler_thread = true;
   own_stop = &stop;
@@ -146,7 +159,9 @@ void loop(Scheduler& s, const std::atomic<bool>& stop) {
     }
     // Without an open arm, it sleeps for a period.
     const double every = std::round(arms::facts(arm).rate / static_cast<double>(rate));
-    arms::wait_for_tick(arm, tick + static_cast<std::uint64_t>(std::max(every, 1.0)) - 1);
+    const std::uint64_t ticks = static_cast<std::uint64_t>(std::max(every, 1.0));
+    arms::wait_for_tick(arm, tick + ticks - 1);
+    advance_others(arm, ticks);
     if (arms::read(arm, reading)) tick = reading.tick;
     if (stop.load()) break;
     s.tick_began_ns.store(now_ns());
@@ -168,12 +183,15 @@ void end_forces() {
   const std::lock_guard lock(devices().mutex);
   for (HHD handle = 0; handle < kArmsMax; ++handle) {
     if (!is_open(handle)) continue;
-    devices().all[handle].frame.f_asked_W = {};
-    arms::ask_force(static_cast<int>(handle), {});
+    remove_command(handle);
   }
 }
 
 }  // namespace
+
+std::uint64_t scheduler_run() noexcept {
+  return own_run;
+}
 
 bool scheduler_stopped() noexcept {
   return own_stop != nullptr && own_stop->load();

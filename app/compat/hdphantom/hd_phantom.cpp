@@ -16,6 +16,7 @@ using thimble::compat::ArmFacts;
 using thimble::compat::ArmReading;
 using thimble::compat::ForceRequest;
 
+constexpr const char* kApi = "hdPhantom";
 constexpr int kFailed = -1, kDone = 0, kTrue = 1;
 
 std::mutex& mutex() {
@@ -70,11 +71,11 @@ int set(const char* function, int id, const std::array<double, 3>* force,
 extern "C" {
 
 int hdPhantomGetNumDevices(void) {
-  return arms::count();
+  return arms::listed(kApi);
 }
 
 int hdPhantomOpen(int id) {
-  const std::string trouble = arms::open(id, "hdPhantom");
+  const std::string trouble = arms::open(id, kApi);
   if (!trouble.empty()) return wrong(__func__, trouble.c_str());
   {
     const std::lock_guard lock(mutex());
@@ -130,7 +131,7 @@ int hdPhantomGetWorkspaceRadius(int id, double* radius) {
   if (radius == nullptr) return wrong(__func__, "the pointer is null");
   *radius = 0;
   if (id < 0 || id >= arms::count()) return wrong(__func__, "no arm has this number");
-  const ArmFacts& facts = arms::facts(id);
+  const ArmFacts facts = arms::facts(id);
   // Radius of the largest ball in the workspace.
   double half = 1;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -144,7 +145,7 @@ int hdPhantomGetType(int id, char* name) {
   if (name == nullptr) return wrong(__func__, "the pointer is null");
   *name = 0;
   if (id < 0 || id >= arms::count()) return wrong(__func__, "no arm has this number");
-  const ArmFacts& facts = arms::facts(id);  // shorter than the caller's buffer
+  const ArmFacts facts = arms::facts(id);  // shorter than the caller's buffer
   std::memcpy(name, facts.name.data(), facts.name.size());
   return kTrue;
 }

@@ -80,11 +80,16 @@ driver::Result<void> ArmRun::prepare(int number) {
   asked.share_out = true;
   asked.share_if_possible = !options_.view && !asked.hand_by_mouse;
   std::vector<scene::HandWaypoint> path;
-  if (options_.hand != "mouse" && options_.hand != "path") {
+  std::vector<scene::ButtonStep> held;
+  const bool is_file =
+      options_.hand != "mouse" && options_.hand != "path" && options_.hand != "free";
+  if (is_file) {
     auto read = read_hand_path(options_.hand);
     if (!read) return read.error();
-    path = std::move(read).value();
+    path = std::move(read->path);
+    held = std::move(read->buttons);
   }
+  asked.buttons = scene::steps_of(options_.presses, held);
   const bool alone = options_.scene.empty();
   asked.adjust = [path, alone, this](scene::Scene& adjusted) {
     if (alone) adjusted.name = options_.program;
@@ -94,11 +99,13 @@ driver::Result<void> ArmRun::prepare(int number) {
   if (!prepared) return prepared.error();
   session_ = std::move(prepared).value();
   for (const std::string& warning : session_->warnings()) scene::terminal().info("{}", warning);
+  std::vector<std::string> window;
+  if (!options_.theme.empty()) window = {"--theme", options_.theme};
   desk_ = session::open_viewer_requests(*session_,
                                         options_.view || asked.hand_by_mouse
                                             ? session::ViewerChoice::kAsked
                                             : session::ViewerChoice::kNever,
-                                        asked.hand_by_mouse);
+                                        asked.hand_by_mouse, window);
   servo_ = std::make_unique<session::ServoThread>(!options_.paced);
   if (arm->real) return session::check_real_time(servo_->grant(), options_.no_real_time);
   return {};
@@ -117,13 +124,18 @@ driver::Result<void> ArmRun::start(const std::atomic<bool>& stop) {
   client_ = std::make_unique<ClientForce>(channel_, session_->own_law(), session_->device(),
                                           !session_->setup().real_arm());
   publisher_ = std::make_unique<ReadingPublisher>(channel_, *client_, session_->device(), arm);
+  if (session_->simulation() != nullptr && options_.hand != "mouse") {
+    publisher_->let_hand_yield(*session_->simulation(), options_.hand == "free");
+  }
   if (auto set = session_->set_servo_law(driver::ForceLaw(*client_)); !set) return set;
   if (options_.opened) options_.opened(index_, *session_);
   if (auto added = session_->add_observer(*publisher_); !added) return added;
   if (auto opened = open_topics(); !opened) return opened;
-  channel_.facts = facts_of(arm, session_->device().traits());
-  channel_.facts.rate = session_->scene().rate;
-  if (const auto& real = session_->setup().real_arm()) name_real(channel_.facts, real->name());
+  ArmFacts facts = facts_of(arm, session_->device().traits());
+  facts.rate = session_->scene().rate;
+  number_simulated(facts, index_);
+  if (const auto& real = session_->setup().real_arm()) name_real(facts, real->name());
+  channel_.facts.store(facts);
   if (session_->setup().real_arm()) watch_.emplace(*session_);
   // No progress line, because the program writes to the same terminal.
   attendance_.emplace(*session_, watch_ ? &*watch_ : nullptr, desk_.get(), false);
@@ -157,10 +169,11 @@ void ArmRun::attend(const std::string& program) {
   const std::string who = fmt::format("{} ({})", program, channel_.api.data());
   if (client_->stalls() != reported_stalls_) {
     if (reported_stalls_ == 0) {
+      const ArmFacts facts = read_facts(channel_);
       scene::logger().warn(
           "{} has not renewed its force on {} for {:.0f} ms. The force is zero until it does. The "
           "program hangs, or its loop is too slow.",
-          who, channel_.facts.name.data(), 1e-6 * static_cast<double>(channel_.facts.stall_ns));
+          who, facts.name.data(), 1e-6 * static_cast<double>(facts.stall_ns));
     }
     reported_stalls_ = client_->stalls();
   }
@@ -169,9 +182,20 @@ void ArmRun::attend(const std::string& program) {
   const bool faulty = newest.fault != driver::Fault::kNone;
   if (faulty && !fault_reported_) {
     scene::logger().error("{}: the force of {} was switched off: {}", who,
-                          channel_.facts.name.data(), driver::describe(newest.fault));
+                          read_facts(channel_).name.data(), driver::describe(newest.fault));
   }
   fault_reported_ = faulty;
+}
+
+void ArmRun::answer_joints() noexcept {
+  JointQuestion& question = channel_.joints;
+  const std::uint32_t asked = question.asked.load();
+  if (asked == question.answered.load()) return;
+  const Eigen::Vector3d q = Eigen::Map<const Eigen::Vector3d>(question.q.data());
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(question.J_WT.data()) =
+      jacobian_of(session_->scene().arms.front().arm, q);
+  question.answered.store(asked, std::memory_order_release);
+  wake_all(question.answered);
 }
 
 std::string ArmRun::end() {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compat/core/arm_channel.h"
 #include "compat/server/client_force.h"
@@ -38,6 +39,8 @@ class ArmRun {
 
   /// Attends to the run; call it about ten times a second. Reports a program that hangs.
   void attend(const std::string& program);
+  /// Answers a pending question of the program for a Jacobian.
+  void answer_joints() noexcept;
   /// Returns whether a viewer has ended the run.
   bool ended_by_viewer() const noexcept { return desk_ && desk_->ended(); }
   /// Ends the run with zero force, and returns its report: the summary of every run, and a part

@@ -44,7 +44,7 @@ driver::Result<void> check_inputs(const ExecOptions& options) {
     const auto read = scene::load_scene(*found, {.arm = options.arms.front().arm_file});
     if (!read) return read.error();
   }
-  if (options.hand == "path" || options.hand == "mouse") return {};
+  if (options.hand == "path" || options.hand == "mouse" || options.hand == "free") return {};
   const auto hand = read_hand_path(options.hand);
   return hand ? driver::Result<void>() : driver::Error{"--hand: " + hand.error().message};
 }
@@ -94,7 +94,9 @@ ArmServer::ArmServer(const ExecOptions& options, const std::atomic<bool>& stop,
   channel_->arm_count = static_cast<std::int32_t>(options_.arms.size());
   for (std::size_t i = 0; i < options_.arms.size(); ++i) {
     put_text(channel_->arms[i].name, name_of(options_.arms[i]));
-    channel_->arms[i].facts = known_facts(options_, options_.arms[i]);
+    ArmFacts facts = known_facts(options_, options_.arms[i]);
+    if (options_.arms[i].device == "sim") number_simulated(facts, i);
+    channel_->arms[i].facts.store(facts);
   }
   channel_->layout.store(channel_layout_hash(), std::memory_order_release);
 }
@@ -137,11 +139,12 @@ void ArmServer::serve(std::size_t index) {
     }
     return;
   }
+  run->answer_joints();
   run->attend(options_.program);
   ended_by_viewer_ = ended_by_viewer_ || run->ended_by_viewer();
   if (!owned) {
     scene::logger().warn("{} ended without closing {}; its force is off.", options_.program,
-                         shared.facts.name.data());
+                         read_facts(shared).name.data());
     close(index, ChannelState::kClosed);
   }
 }
@@ -195,8 +198,10 @@ std::string ArmServer::report() const {
   const std::uint32_t used = channel_->wrong_calls_used.load();
   for (std::size_t i = 0; i < used && i < Channel::kWrongCallsMax; ++i) {
     const WrongCall& call = channel_->wrong_calls[i];
-    s += fmt::format("Wrong     {} {} time{}: {}\n", call.function.data(), call.count.load(),
-                     call.count.load() == 1 ? "" : "s", call.what.data());
+    const std::uint64_t count = call.count.load(std::memory_order_acquire);
+    if (count == 0) continue;  // a program adds it at this moment
+    s += fmt::format("Wrong     {} {} time{}: {}\n", call.function.data(), count,
+                     count == 1 ? "" : "s", call.what.data());
   }
   return s;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include "compat/server/put_text.h"
 
@@ -29,12 +30,17 @@ ArmFacts facts_of(const scene::ArmFile& arm, const driver::ArmTraits& traits) {
   facts.stiffness_max = arm.declared.stiffness;
   facts.damping_max = arm.declared.damping;
   facts.speed_max = arm.limits.speed_max;
+  facts.rise_max = arm.limits.rise_max;
   facts.stall_ns = arm.limits.stall_ns;
   for (std::size_t i = 0; i < 3; ++i) {
     facts.workspace_min[i] = arm.workspace.min_W[static_cast<Eigen::Index>(i)];
     facts.workspace_max[i] = arm.workspace.max_W[static_cast<Eigen::Index>(i)];
   }
   return facts;
+}
+
+void number_simulated(ArmFacts& facts, std::size_t index) {
+  put_text(facts.serial, "sim" + std::to_string(index + 1));
 }
 
 void name_real(ArmFacts& facts, const std::string& name) {

@@ -18,6 +18,13 @@ void put(const Eigen::Matrix3d& matrix, std::array<double, 9>& to) noexcept {
 
 }  // namespace
 
+Eigen::Matrix3d jacobian_of(const scene::ArmFile& arm, const Eigen::Vector3d& q) noexcept {
+  Eigen::Vector3d p_BT;
+  Eigen::Matrix3d J_BT = Eigen::Matrix3d::Zero();
+  std::visit([&](const auto& build) { build.forward(q, p_BT, J_BT); }, arm.model.geometry);
+  return arm.R_WB * J_BT;
+}
+
 ReadingPublisher::ReadingPublisher(ArmChannel& channel, const ClientForce& client,
                                    const driver::Device& device, const scene::ArmFile& arm) noexcept
     : channel_(channel),
@@ -47,6 +54,10 @@ void ReadingPublisher::take(const driver::TickRecord& record) noexcept {
   turn(record);
   if (device_.traits().has_joints) find_jacobian(record);
   look_at_gate();
+  // A person who is moved by an arm lets it. If the arm cannot reach the point, the hand stays.
+  if (hand_of_ != nullptr && (hand_is_free_ || channel_.regulated.load() != 0)) {
+    hand_of_->lead(Eigen::Map<const Eigen::Vector3d>(record.p_WT.data()));
+  }
   time_ns_ = record.time_ns;
   channel_.reading.store(reading_);
   channel_.taken.store(client_.taken());
@@ -75,11 +86,7 @@ void ReadingPublisher::turn(const driver::TickRecord& record) noexcept {
 }
 
 void ReadingPublisher::find_jacobian(const driver::TickRecord& record) noexcept {
-  const Eigen::Vector3d q = Eigen::Map<const Eigen::Vector3d>(record.q.data());
-  Eigen::Vector3d p_BT;
-  Eigen::Matrix3d J_BT = Eigen::Matrix3d::Zero();
-  std::visit([&](const auto& build) { build.forward(q, p_BT, J_BT); }, arm_.model.geometry);
-  put(arm_.R_WB * J_BT, reading_.J_WT);
+  put(jacobian_of(arm_, Eigen::Map<const Eigen::Vector3d>(record.q.data())), reading_.J_WT);
 }
 
 void ReadingPublisher::look_at_gate() noexcept {

@@ -21,24 +21,33 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import _core
+from . import _core, _numpy_version
 from ._arguments import PathOrName
+from ._compare import Comparison, Difference
 from ._core import ArgumentError, Error
 from ._knobs import Knob, Knobs
 from ._laws import CompiledLaw, Law, LawFunction, compiled_law
 from ._live import Live, open
 from ._meshes import Meshes
+from ._page import Page, show
+from ._run_base import Body
 from ._runs import Run, Stepper, run
 from ._scene_text import Scene
 from ._shot import Shot, shot
 from ._simulator import Simulator, Simulators
 from ._study import study
 from ._ticks import Figure, Recording, Tick, Ticks, read_recording, units
+from ._timeline import Timeline
+
+_numpy_version.check(getattr(_core, "pybind11_version", ""))
 
 __version__: str = _core.version
 __all__ = [
     "ArgumentError",
+    "Body",
+    "Comparison",
     "CompiledLaw",
+    "Difference",
     "Error",
     "Figure",
     "Knob",
@@ -47,6 +56,7 @@ __all__ = [
     "Live",
     "Meshes",
     "NamedFile",
+    "Page",
     "Recording",
     "Run",
     "Shot",
@@ -55,6 +65,7 @@ __all__ = [
     "Stepper",
     "Tick",
     "Ticks",
+    "Timeline",
     "arms",
     "compiled_law",
     "devices",
@@ -63,6 +74,7 @@ __all__ = [
     "run",
     "scenes",
     "shot",
+    "show",
     "study",
     "units",
 ]

@@ -66,6 +66,11 @@ def rows_of(name: str, value: ArrayLike, rows: int, finite: bool = True) -> Vect
     return _array(name, value, (rows, 3), f"the shape ({rows}, 3) or (3,)", finite)
 
 
+def text_of_span(begin: float, end: float) -> str:
+    """Return a span of time for people: "0.000 to 2.999 s"."""
+    return f"{begin:.3f} to {end:.3f} s"
+
+
 def warn_renamed(old: str, new: str) -> None:
     """Warn the caller of the calling function that it used an old name."""
     warnings.warn(f"{old} is deprecated; use {new}.", DeprecationWarning, stacklevel=3)

@@ -27,7 +27,8 @@ class CompiledLaw:
         self._kept = kept
 
     def __repr__(self) -> str:
-        return f"CompiledLaw({self.address:#x})"
+        data = "" if self.data is None else f", data of {self.data.size} numbers"
+        return f"CompiledLaw({getattr(self._kept, '__name__', 'function')} at {self.address:#x}{data})"
 
 
 Law = Union[Callable[[Tick], Optional[ArrayLike]], CompiledLaw]

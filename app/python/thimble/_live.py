@@ -10,13 +10,13 @@ from typing import Any, Mapping, Optional, Union
 from . import _core
 from ._arguments import PathOrName, path_of
 from ._core import Error
-from ._run_base import RunBase, open_run, stop_all, stop_at_exit
+from ._run_base import ButtonRun, open_run, stop_all, stop_at_exit
 from ._knobs import Knobs
 from ._scene_text import Scene
 from ._ticks import Tick, Ticks
 
 
-class Live(RunBase):
+class Live(ButtonRun):
     """A scene in real time, on a simulated or a real arm (:func:`open`).
 
     The servo loop runs in C++ on its own thread; Python observes it and can end it. Use it in a ``with``
@@ -34,6 +34,11 @@ class Live(RunBase):
 
     def __exit__(self, *_: object) -> None:
         self.stop()
+
+    def __repr__(self) -> str:
+        tick = self.tick
+        state = "running" if self.running else self.end or "not begun"
+        return f"Live({self._name()}, device {self.info['device']}: {state}{'' if tick is None else f', at {tick.time:.3f} s'})"
 
     @property
     def running(self) -> bool:

@@ -5,18 +5,27 @@ from __future__ import annotations
 import atexit
 import warnings
 import weakref
-from typing import Any, Mapping, Optional, Protocol, Union
+from typing import Any, Mapping, NamedTuple, Optional, Protocol, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
 from ._arguments import PathOrName, Vector, number_of, optional_path, path_of, whole_of
-from ._core import ArgumentError
+from ._core import ArgumentError, Error
 from ._laws import Law, core_law
 from ._meshes import Meshes, core_meshes
 from ._scene_text import Scene, scene_file
 from ._ticks import Figure, figure_of
+
+
+class Body(NamedTuple):
+    """Pose of an object that moves. A point at p before the first tick is now at position + R(orientation) p."""
+
+    position: Vector
+    """(3,), in the world, m; zeros before the first tick."""
+    orientation: Vector
+    """(4,): quaternion w, x, y, z; 1, 0, 0, 0 before the first tick."""
 
 
 class RunBase:
@@ -28,6 +37,14 @@ class RunBase:
     def objects(self) -> list[str]:
         """Names of the objects, in the order of the scene."""
         return self._run.objects
+
+    @property
+    def bodies(self) -> dict[str, Body]:
+        """Present poses of all objects that move, by name, in the order of the scene.
+
+        Raises Error while a run in real time continues.
+        """
+        return {name: Body(*pose) for name, pose in self._run.bodies.items()}
 
     @property
     def trackers(self) -> dict[str, tuple[str, str]]:
@@ -61,9 +78,27 @@ class RunBase:
         """Return the summary of a finished run, as ``thimble run`` prints it."""
         return self._run.summary()
 
+    def _name(self) -> str:
+        """Return scene and arm, for people."""
+        info = self.info
+        return f"{info['scene']}, {info['arm']}"
+
     def figures(self) -> list[Figure]:
         """Return the figures of a finished run, with their goals."""
         return [figure_of(one) for one in self._run.figures()]
+
+
+class ButtonRun(RunBase):
+    """Base class of runs that continue, and whose simulated arm has buttons."""
+
+    def hold_buttons(self, *buttons: int) -> None:
+        """Hold these buttons of the first arm (1 to 16) from the next report until the next call.
+
+        Without an argument all are released. Raises Error if the arm is real: only a hand can press its buttons.
+        """
+        held = {whole_of("buttons", button, 1, 16) for button in buttons}
+        if not self._run.hold_buttons(sum(1 << (button - 1) for button in held)):
+            raise Error('The arm is real, so only a hand can press its buttons. Use device="sim".')
 
 
 class FinishedRun:
@@ -71,6 +106,7 @@ class FinishedRun:
 
     def __init__(self, run: Union[_core.Run, "FinishedRun", "ArmView"]) -> None:
         self.objects: list[str] = list(run.objects)
+        self.bodies: dict[str, tuple[Vector, Vector]] = dict(run.bodies)
         self.trackers: dict[str, tuple[str, str]] = dict(run.trackers)
         self.end: Optional[str] = run.end
         self.stride: int = run.stride

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._arguments import PathOrName, vector_of
-from ._run_base import RunBase, ArmView, FinishedRun, open_run, stop_at_exit
+from ._run_base import ButtonRun, RunBase, ArmView, FinishedRun, open_run, stop_at_exit
 from ._knobs import Knobs
 from ._laws import Law
 from ._meshes import Meshes
@@ -52,7 +52,7 @@ class Run(RunBase, Ticks):
         self._run = run
         self._shot_source = shot_source
         self._arms = arms
-        Ticks.__init__(self, run.ticks() if columns is None else columns)
+        super().__init__(run.ticks() if columns is None else columns)
 
     @property
     def arms(self) -> dict[str, "Run"]:
@@ -76,8 +76,12 @@ class Run(RunBase, Ticks):
         assert self._shot_source is not None
         return self._shot_source.shot(at=at, **options)
 
+    def __repr__(self) -> str:
+        arms = f", arms {', '.join(self.arms)}" if self.arms else ""
+        return f"Run({self._name()}: {self.end}, {self._contents()}{arms})"
+
     def _title(self) -> str:
-        return f"{self.info['scene']}, {self.info['arm']}"
+        return self._name()
 
     def _figures(self) -> list[Figure]:
         return self.figures()
@@ -129,7 +133,7 @@ def run(
     return Run(held, shot_source=ShotSource(held.info()["scene_file"], arm, seed, why_not))
 
 
-class Stepper(RunBase):
+class Stepper(ButtonRun):
     """A run in virtual time, tick by tick. The options are those of :func:`run`.
 
     ``while stepper.step(): ...`` is bit-identical to :func:`run`. Use it in a ``with`` block if it records:
@@ -151,6 +155,10 @@ class Stepper(RunBase):
 
     def __exit__(self, *_: object) -> None:
         self.stop()
+
+    def __repr__(self) -> str:
+        tick = self.tick
+        return f"Stepper({self._name()}: {self.end or ('not begun' if tick is None else f'at {tick.time:.3f} s')})"
 
     def step(self, hand: Optional[ArrayLike] = None) -> bool:
         """Run the next tick. Returns False, and runs nothing, if the run is over.

@@ -56,6 +56,7 @@ def shot(
     size: Sequence[int] = (960, 640),
     camera: Optional[Sequence[float]] = None,
     plots: bool = False,
+    collision: bool = False,
     show_arm: bool = True,
     caption: bool = True,
 ) -> Shot:
@@ -64,8 +65,8 @@ def shot(
     scene, set, arm: as in :func:`run`. at: time to draw, s; by default the moment of the largest force.
     size: width and height, pixels. camera: yaw (about z, from the user) and pitch (above the horizon),
     degrees; a third number is the factor by which the camera is closer. plots: also draw force and depth
-    over time, below the picture. Raises ArgumentError for wrong arguments, Error if the program cannot
-    draw on this computer; both have the message of the program.
+    over time, below the picture. collision: also show the shapes with which bodies meet. Raises ArgumentError
+    for wrong arguments, Error if the program cannot draw on this computer; both have the message of the program.
     """
     width, height = (whole_of("size", one, 64, 8192) for one in _numbers("size", size, (2,)))
     command = ["--size", f"{width}x{height}"]
@@ -75,12 +76,13 @@ def shot(
         command += ["--arm", path_of("arm", arm)]
     if camera is not None:
         command += ["--camera", *map(repr, _numbers("camera", camera, (2, 3)))]
-    command += ["--plots"] * plots + ["--no-arm"] * (not show_arm) + ["--no-caption"] * (not caption)
+    command += ["--plots"] * plots + ["--collision"] * collision
+    command += ["--no-arm"] * (not show_arm) + ["--no-caption"] * (not caption)
     file = scene_file(scene, set, keep=False)
     with tempfile.TemporaryDirectory(prefix="thimble-shot-") as folder:
         picture = Path(folder, "shot.png")
         done = subprocess.run(
-            [program(), "shot", file, "--out", str(picture), *command], capture_output=True, text=True, check=False
+            [program(), "shot", file, "--output", str(picture), *command], capture_output=True, text=True, check=False
         )
         if done.returncode != 0:
             kind = ArgumentError if done.returncode == BAD_INPUT else Error

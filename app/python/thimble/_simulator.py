@@ -35,6 +35,10 @@ class Simulator:
             path_of("arm", arm), vector_of("hand", hand), number_of("rate", rate), whole_of("seed", seed)
         )
 
+    def __repr__(self) -> str:
+        fault = ", in fault: activate() allows forces again" if self._arm.in_fault else ""
+        return f"Simulator({self.name}, force up to {self.force_max:g} N{fault})"
+
     def step(self, force: ArrayLike = (0.0, 0.0, 0.0), hand: Optional[ArrayLike] = None) -> Tick:
         """Run one tick with a force on the hand, (3,) in the world, N, and return the tick.
 
@@ -107,6 +111,10 @@ class Simulators:
 
     def __len__(self) -> int:
         return len(self._arms)
+
+    def __repr__(self) -> str:
+        faults = sum(arm.in_fault for arm in self._arms)
+        return f"Simulators({len(self)} times {self.name}, force up to {self.force_max:g} N, {faults} in fault)"
 
     def step(self, force: ArrayLike = (0.0, 0.0, 0.0), hand: Optional[ArrayLike] = None) -> Ticks:
         """Run one tick of each arm, and return them: ``ticks.tip`` is (count, 3), a row for each arm.

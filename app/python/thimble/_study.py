@@ -59,7 +59,7 @@ def study(
     if name not in names:
         raise ArgumentError(f'name: there is no study "{name}"; there are {", ".join(names)}.')
     folder = Path(path_of("out", out)) if out is not None else Path(f"study-{name}")
-    command = [program(), "study", name, *(path_of("arguments", one) for one in arguments), "--out", str(folder)]
+    command = [program(), "study", name, *(path_of("arguments", one) for one in arguments), "--output", str(folder)]
     for key, value in options.items():
         if value is None or value is False:
             continue

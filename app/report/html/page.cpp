@@ -75,6 +75,7 @@ Json about(const PageTouch& touch, PageBlock& block) {
     json["arms"].push_back(page_arm(touch, i, block));
   }
   json["arrays"] = block.arrays();
+  json["numbers_bytes"] = block.bytes().size();
   return json;
 }
 
@@ -123,7 +124,7 @@ driver::Result<std::string> page_text(const PageTouch& touch, const PageSource* 
                             {"STYLE", std::string(kPageStyle)},
                             {"LICENCES", licences},
                             {"ABOUT", script_json(json)},
-                            {"NUMBERS", base64(block.bytes())},
+                            {"NUMBERS", base64(deflated(block.bytes()))},
                             {"LIBRARIES", scripts},
                             {"SCRIPT", script_text(std::string(kPageScript))}});
 }

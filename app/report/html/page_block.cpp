@@ -1,6 +1,9 @@
 #include "report/html/page_block.h"
 
+#include <zlib.h>
+
 #include <bit>
+#include <new>
 
 namespace thimble::report {
 
@@ -31,6 +34,17 @@ void PageBlock::add(const std::string& name, std::span<const std::int16_t> numbe
 }
 void PageBlock::add(const std::string& name, std::span<const std::uint8_t> numbers) {
   append(name, "u8", numbers.data(), numbers.size(), 1);
+}
+
+std::vector<std::uint8_t> deflated(std::span<const std::uint8_t> bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::vector<std::uint8_t> packed(size);
+  // Without memory for zlib's window there is none for the page either.
+  if (compress2(packed.data(), &size, bytes.data(), bytes.size(), Z_DEFAULT_COMPRESSION) != Z_OK) {
+    throw std::bad_alloc();
+  }
+  packed.resize(size);
+  return packed;
 }
 
 std::string base64(std::span<const std::uint8_t> bytes) {

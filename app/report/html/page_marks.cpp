@@ -129,11 +129,18 @@ class NoCounters final : public session::EventCounters {
 
 bool gate_acted(const driver::TickRecord& tick) noexcept {
   if (tick.stage != driver::DeviceStage::kActive) return false;
-  double max_difference = 0;
+  double max_difference = 0, along = 0, sent = 0, off = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    max_difference = std::max(max_difference, std::abs(tick.f_sent_W[k] - tick.f_wanted_W[k]));
+    const double difference = tick.f_sent_W[k] - tick.f_wanted_W[k];
+    max_difference = std::max(max_difference, std::abs(difference));
+    along += difference * tick.f_sent_W[k];
+    sent += tick.f_sent_W[k] * tick.f_sent_W[k];
+    off += difference * difference;
   }
-  return max_difference > 1e-6;  // N: rounding errors of the arm's frames are smaller
+  if (!(max_difference > 1e-6)) return false;  // N: rounding errors of the arm's frames are smaller
+  // An arm with one or two motors gives the projection of the force, so the rest is at a right
+  // angle to it. That is no effect of the gate.
+  return !(sent > 0 && along * along <= 1e-18 * sent * off);
 }
 
 // Intervals in which the gate changed the force, merged across gaps of up to EventWatch::kQuiet_ns.

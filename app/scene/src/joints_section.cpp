@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::int64_t kIterationsMax = 1000;  // [chosen: one step of ten bodies takes 1 ms then]
 constexpr std::int64_t kSubstepsMax = 64;      // [chosen]
+constexpr std::int64_t kEveryMax = 32;         // [chosen: 31 Hz in a loop of 1 kHz]
 
 /// Returns the index of an object that a joint can hold, named by a key; -1 if there is none.
 int object_named(YamlMap& joint, const char* key, const Scene& scene) {
@@ -49,6 +50,17 @@ void read_joints(YamlMap& root, const std::filesystem::path& folder, Scene& scen
       YamlSettings settings(map, folder);
       joint.choice.read(settings);
       settings.finish();
+      const auto turns = [&](int i) {
+        return moves(i) && scene.objects[static_cast<std::size_t>(i)].body.motion->kind ==
+                               render::MotionKind::kRigid;
+      };
+      const bool turning = joint.choice.kind == render::JointKind::kHinge ||
+                           joint.choice.kind == render::JointKind::kBall;
+      if (turning && (moves(joint.a) || moves(joint.b)) && !turns(joint.a) && !turns(joint.b)) {
+        map.reject("object",
+                   "only translates, so the joint cannot turn it; set kind: rigid in its "
+                   "body: {motion: ...}");
+      }
       scene.joints.push_back(joint);
     }
   }
@@ -59,6 +71,11 @@ void read_joints(YamlMap& root, const std::filesystem::path& folder, Scene& scen
         "iterations", static_cast<std::int64_t>(quality.iterations), "", 1, kIterationsMax));
     quality.substeps = static_cast<std::size_t>(map.optional_whole(
         "substeps", static_cast<std::int64_t>(quality.substeps), "", 1, kSubstepsMax));
+    quality.every = static_cast<std::size_t>(map.optional_whole(
+        "every", static_cast<std::int64_t>(quality.every), "ticks", 1, kEveryMax));
+    if (quality.every > 1 && quality.substeps > 1) {
+      map.reject("every", "cannot be combined with substeps, which make the steps shorter");
+    }
     map.finish();
   }
 }

@@ -35,7 +35,8 @@ std::vector<std::string_view> group_names() {
 
 /// Returns the effect that an entry of the list names; nullptr, with a recorded mistake, if there
 /// is none.
-const render::EffectKind* named_effect(YamlMap& entry) {
+/// `text`: the value of the group, if it is any text.
+const render::EffectKind* named_effect(YamlMap& entry, std::string& text) {
   const render::EffectKind* found = nullptr;
   std::string known;
   for (const std::string_view group : group_names()) {
@@ -52,7 +53,12 @@ const render::EffectKind* named_effect(YamlMap& entry) {
       kinds.push_back(&kind);
       names.push_back(kind.name);
     }
-    found = kinds[entry.require_choice(group, names)];
+    if (kinds.front()->free_text) {
+      found = kinds.front();
+      text = entry.require_string(group);
+    } else {
+      found = kinds[entry.require_choice(group, names)];
+    }
   }
   if (found == nullptr) entry.refuse("", "expected " + known);
   return found;
@@ -126,10 +132,11 @@ std::vector<render::EffectPlan> read_effects(YamlMap& object, const std::filesys
                                              const render::EffectContext& context) {
   std::vector<render::EffectPlan> plans;
   for (YamlMap& entry : object.require_maps("effects")) {
-    const render::EffectKind* kind = named_effect(entry);
+    std::string text;
+    const render::EffectKind* kind = named_effect(entry, text);
     if (kind == nullptr) continue;
     entry.set_place("effects[] " + std::string(kind->group) + ": " + std::string(kind->name));
-    YamlSettings settings(entry, folder);
+    YamlSettings settings(entry, folder, kind->group, std::move(text));
     plans.push_back({kind, kind->read(settings, context)});
     settings.finish();
   }

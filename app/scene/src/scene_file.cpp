@@ -5,7 +5,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <numbers>
 #include <span>
 #include <string_view>
@@ -91,7 +93,9 @@ render::ContactChoice read_contact(YamlMap map, bool& named) {
 
 void read_mesh(YamlMap& map, const std::filesystem::path& folder,
                const std::filesystem::path& mesh_folder, SceneObject& object) {
-  if (map.has("mesh")) {
+  if (map.has("mesh") && object.mesh) {
+    object.mesh_file = map.name_of_place();
+  } else if (map.has("mesh")) {
     object.mesh_file = find_mesh_file(map, folder, mesh_folder);
   } else {
     map.refuse_absence(
@@ -214,10 +218,24 @@ void read_collision(YamlMap& map, const std::filesystem::path& folder, SceneObje
   }
 }
 
+/// Adds the effects of a program to those of the text.
+void add_effects(YamlMap& map, const std::vector<render::EffectPlan>& own, SceneObject& object) {
+  for (const render::EffectPlan& plan : own) {
+    if (plan.kind == nullptr || !plan.build) {
+      map.refuse("", "an effect of the program needs its kind and its builder; set both");
+      return;
+    }
+    object.effects.push_back(plan);
+  }
+  std::stable_sort(object.effects.begin(), object.effects.end(),
+                   [](const auto& a, const auto& b) { return a.kind->order < b.kind->order; });
+}
+
 SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
                         const std::filesystem::path& mesh_folder, render::EffectContext context,
-                        const Eigen::Vector3d& gravity_W) {
+                        const Eigen::Vector3d& gravity_W, const ObjectInMemory& in_memory) {
   SceneObject object;
+  if (in_memory.mesh) object.mesh = in_memory.mesh;
   object.name = map.require_string("name");
   int forms = 0;
   for (const char* form :
@@ -239,6 +257,9 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   explain_unused_keys(map);
   if (map.has("field")) {
     object.build_field = read_field(map, folder, context);
+    if (!in_memory.effects.empty()) {
+      map.refuse("", "an effect of the program needs a surface: a mesh or a shape");
+    }
     return object;
   }
   object.shape = read_shape(map, object.R_WO, object.p_WO);
@@ -249,7 +270,8 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
     object.stiffness = map.require_number("stiffness", "N/m", 0, kStiffnessMax);
   }
   object.damping = map.optional_number("damping", 0, "N s/m", 0, kDampingMax);
-  object.paged = !object.mesh_file.empty() && render::is_page_file(object.mesh_file);
+  object.paged =
+      !object.mesh && !object.mesh_file.empty() && render::is_page_file(object.mesh_file);
   if (!object.shape && map.has("contact")) {
     object.contact = read_contact(map.require_map("contact"), object.tracker_named);
   }
@@ -273,6 +295,7 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
   if (map.has("effects")) {
     object.effects = read_effects(map, folder, context);
   }
+  if (!in_memory.effects.empty()) add_effects(map, in_memory.effects, object);
   if (!object.shape && map.has("friction_map")) read_friction_map(map, folder, object);
   if (map.has("body")) {
     object.body = read_body(map, folder, context, gravity_W);
@@ -290,6 +313,9 @@ SceneObject read_object(YamlMap map, const std::filesystem::path& folder,
     } else if (object.shape && (object.body.dent || object.body.shape.named())) {
       map.reject("body",
                  "of a shape can only be motion: dent, plastic and snap need a mesh; name a mesh");
+    } else if (object.body.motion && object.shape &&
+               std::holds_alternative<render::HalfSpace>(object.shape->shape_W)) {
+      map.reject("body", "a plane has no end and cannot move; use a box, or remove body");
     }
   }
   read_collision(map, folder, object);
@@ -379,7 +405,8 @@ bool SceneObject::needs_maps() const {
 }
 
 driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& file,
-                                 const SceneReading& reading) {
+                                 const SceneReading& reading,
+                                 std::span<const ObjectInMemory> in_memory) {
   const std::filesystem::path& mesh_folder = reading.mesh_folder;
   YamlMap& root = yaml.root();
   const std::filesystem::path folder = file.parent_path();
@@ -432,9 +459,12 @@ driver::Result<Scene> read_scene(YamlFile& yaml, const std::filesystem::path& fi
       root.optional_vector3("gravity", Eigen::Vector3d::Zero(), "m/s^2", -kGravityMax, kGravityMax);
   const render::EffectContext context = effect_context_of(scene.arms.front().arm, scene.rate);
   scene.objects.reserve(root.list_size("objects"));
+  std::size_t number = 0;
   root.visit_maps("objects", [&](YamlMap& object) {
+    const ObjectInMemory memory = number < in_memory.size() ? in_memory[number] : ObjectInMemory();
+    ++number;
     scene.objects.push_back(
-        read_object(std::move(object), folder, mesh_folder, context, gravity_W));
+        read_object(std::move(object), folder, mesh_folder, context, gravity_W, memory));
   });
   read_joints(root, folder, scene);
   if (root.has("tool")) read_tool(root.require_map("tool"), scene);
@@ -470,8 +500,10 @@ driver::Result<Scene> find_and_read_scene(const std::filesystem::path& meant,
 
 }  // namespace
 
-driver::Result<Scene> load_scene(const std::filesystem::path& meant, const SceneReading& reading) {
-  auto scene = find_and_read_scene(meant, reading);
+driver::Result<Scene> read_at_rate(
+    const SceneReading& reading,
+    const std::function<driver::Result<Scene>(const SceneReading&)>& read) {
+  auto scene = read(reading);
   if (!(reading.rate_factor < 1) || (scene && is_stable_at_rate(*scene))) {
     if (scene && reading.rate_factor > 1) {
       const auto report_as_often = [&](ArmFile& arm) {
@@ -484,7 +516,12 @@ driver::Result<Scene> load_scene(const std::filesystem::path& meant, const Scene
   }
   SceneReading unchanged_rate = reading;
   unchanged_rate.rate_factor = 1;
-  return find_and_read_scene(meant, unchanged_rate);
+  return read(unchanged_rate);
+}
+
+driver::Result<Scene> load_scene(const std::filesystem::path& meant, const SceneReading& reading) {
+  return read_at_rate(reading,
+                      [&meant](const SceneReading& at) { return find_and_read_scene(meant, at); });
 }
 
 }  // namespace thimble::scene

@@ -27,7 +27,9 @@ std::string scene_of_everything() {
       "  - {name: mesh, mesh: keys.off, contact: {}, body: {}, collision: {shape: pieces}, "
       "effects: [";
   for (const render::EffectKind& kind : render::effect_table()) {
-    text += fmt::format("{}{{{}: {}}}", text.ends_with('[') ? "" : ", ", kind.group, kind.name);
+    // A formula of a force, where the name is a text of the scene.
+    const std::string_view name = kind.free_text ? "pressure" : kind.name;
+    text += fmt::format("{}{{{}: {}}}", text.ends_with('[') ? "" : ", ", kind.group, name);
   }
   text += "]}\n  - {name: plane, plane: {}}\n  - {name: sphere, sphere: {}}\n";
   for (const char* shape : {"box", "cylinder", "capsule", "cone", "torus"}) {
@@ -106,6 +108,24 @@ void copy_defaults_of_single_arm(std::vector<KeyNote>& notes) {
   }
 }
 
+/// A described wire with a field of each kind that has separate keys.
+constexpr const char* kEveryWireKey =
+    "name: keys\n"
+    "protocol: described\n"
+    "wire:\n"
+    "  report:\n"
+    "    checksum: crc8\n"
+    "    fields:\n"
+    "      - {name: constant, type: u8}\n"
+    "      - {name: errors, type: u8}\n"
+    "      - {name: encoder_1, type: nibbles}\n"
+    "  command:\n"
+    "    checksum: crc8\n"
+    "    fields:\n"
+    "      - {name: constant, type: nibbles}\n"
+    "      - {name: errors, type: u8}\n"
+    "      - {name: motor_1, type: decimal}\n";
+
 std::string title_of(const KeyNote& note) {
   return note.place.empty() ? "the file itself" : note.place;
 }
@@ -138,6 +158,7 @@ std::vector<KeyNote> arm_keys() {
       read_with_every_key(text, keys, [](YamlFile& yaml) { (void)read_arm(yaml); });
     }
   }
+  read_with_every_key(kEveryWireKey, keys, [](YamlFile& yaml) { (void)read_arm(yaml); });
   std::vector<KeyNote> notes = by_place(keys.notes());
   add_meanings(notes, arm_meanings());
   return notes;

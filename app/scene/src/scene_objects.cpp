@@ -13,6 +13,7 @@
 #include "body/motion/shared_body.h"
 #include "build_paged_touch.h"
 #include "collision/collide_objects.h"
+#include "collision/collision_surfaces.h"
 #include "disk_paging/paged_surface.h"
 #include "map_picture.h"
 #include "meshes/mesh_join.h"
@@ -90,6 +91,17 @@ bool bodies_meet(const Scene& scene) {
     moves = moves || object.body.motion.has_value();
   }
   return moves && solids > 1;
+}
+
+/// Returns whether an object of such a scene meets others, or a joint holds it.
+bool takes_part(const Scene& scene, std::size_t i) {
+  const SceneObject& object = scene.objects[i];
+  if (object.build_field || object.paged) return false;
+  if (collision_of(object).shape != render::CollisionShape::kNone) return true;
+  const auto number = static_cast<int>(i);
+  return std::any_of(scene.joints.begin(), scene.joints.end(), [number](const SceneJoint& joint) {
+    return joint.a == number || joint.b == number;
+  });
 }
 
 /// Returns whether a shape at rest collides as a mesh.
@@ -305,12 +317,13 @@ driver::Result<std::unique_ptr<SceneObjects>> SceneObjects::build(
     const bool has_tracker = tracker != objects->trackers_.end() && tracker->object == i;
     const render::ContactChoice& contact = has_tracker ? (tracker++)->contact : object.contact;
     if (arms == 1) {
-      auto touch = build_one(object, contact, mesh_W, *held, reach, meets, objects->pages_);
+      auto touch = build_one(object, contact, mesh_W, *held, reach, meets && takes_part(scene, i),
+                             objects->pages_);
       if (!touch) return touch.error();
       touches[0].push_back(std::move(touch).value());
       continue;
     }
-    auto shared = build_shared(object, contact, mesh_W, *held, arms, meets);
+    auto shared = build_shared(object, contact, mesh_W, *held, arms, meets && takes_part(scene, i));
     if (!shared) return shared.error();
     for (std::size_t arm = 0; arm < arms; ++arm) {
       touches[arm].push_back(std::move(shared->touches[arm]));
@@ -343,7 +356,7 @@ driver::Result<void> SceneObjects::let_meet(const Scene& scene, Touches& touches
   std::vector<std::size_t> moving;                       // in the scene
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
-    if (object.build_field || object.paged) continue;
+    if (!takes_part(scene, i)) continue;
     number_of[i] = static_cast<int>(colliding.size());
     render::CollidingObject& one = colliding.emplace_back();
     one.name = object.name;
@@ -364,13 +377,24 @@ driver::Result<void> SceneObjects::let_meet(const Scene& scene, Touches& touches
   auto met =
       render::collide_objects(std::move(colliding), joints, scene.collisions, touches.size());
   if (!met) return met.error();
+  notes_.insert(notes_.end(), met->notes.begin(), met->notes.end());
   for (std::size_t k = 0; k < moving.size(); ++k) {
     for (std::size_t arm = 0; arm < touches.size(); ++arm) {
       touches[arm][moving[k]] = std::move(met->touches[k][arm]);
     }
   }
   if (touches.size() > 1) bodies_.push_back(std::move(met->bodies));
+  collision_surfaces_ = std::move(met->surfaces);
+  colliding_ = std::move(number_of);
   return {};
+}
+
+MeshPointer SceneObjects::collision_mesh_W(std::size_t object) const {
+  if (collision_surfaces_ == nullptr || colliding_[object] < 0) return nullptr;
+  auto surface = collision_surfaces_->surface_W(static_cast<std::size_t>(colliding_[object]));
+  if (!surface) return shared_mesh_W(object);
+  if (surface->triangles.empty()) return nullptr;
+  return std::make_shared<const render::TriangleMesh>(std::move(*surface));
 }
 
 std::vector<std::string> SceneObjects::tracker_notes(const Scene& scene) const {

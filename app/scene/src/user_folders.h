@@ -21,7 +21,7 @@ THIMBLE_EXPORT std::filesystem::path state_folder();
 
 /// Returns the folder of data that can be recreated: $XDG_CACHE_HOME/thimble, or ~/.cache/thimble
 /// [XDG Base Directory Specification].
-std::filesystem::path cache_folder();
+THIMBLE_EXPORT std::filesystem::path cache_folder();
 
 /// Returns the folder of the user's scenes and arm files: $XDG_DATA_HOME/thimble, or
 /// ~/.local/share/thimble [XDG Base Directory Specification].

@@ -40,16 +40,18 @@ std::optional<Eigen::Matrix3d> jacobian_at(const ArmFile& arm, const Eigen::Vect
     reading.counts[k] =
         static_cast<std::int32_t>(std::lround(counts[static_cast<Eigen::Index>(k)]));
   }
-  return driver::make_arm(arm.protocol, arm.model)->pose(reading).J_BT;
+  return driver::make_arm(arm.protocol, arm.model, arm.wire.get())->pose(reading).J_BT;
 }
 
 std::vector<Eigen::Vector3d> points_of_workspace(const ArmFile& arm, int per_side) {
   std::vector<Eigen::Vector3d> points;
   const Eigen::Vector3d size = arm.workspace.max_W - arm.workspace.min_W;
   const double last = std::max(1, per_side - 1);
-  for (int i = 0; i < per_side; ++i) {
-    for (int j = 0; j < per_side; ++j) {
-      for (int k = 0; k < per_side; ++k) {
+  // The workspace of an arm with one or two motors has no width across its line or plane.
+  const auto count = [&](int axis) { return size[axis] > 0 ? per_side : 1; };
+  for (int i = 0; i < count(0); ++i) {
+    for (int j = 0; j < count(1); ++j) {
+      for (int k = 0; k < count(2); ++k) {
         const Eigen::Vector3d p_W =
             arm.workspace.min_W + size.cwiseProduct(Eigen::Vector3d(i, j, k) / last);
         if (joint_angles_at(arm, p_W)) points.push_back(p_W);

@@ -133,7 +133,7 @@ void ReplugWatch::enable_forces(const driver::TickRecord& record) {
 ReplugWatch replug_watch_of(Session& session, std::size_t arm, Terminal terminal) {
   const Setup& setup = session.setup();
   const auto find = [](const driver::FoundArm& lost) -> std::optional<driver::FoundArm> {
-    const auto plugged_in = driver::find_arms();
+    const auto plugged_in = scene::find_arms();
     return plugged_in ? scene::find_again(*plugged_in, lost) : std::nullopt;
   };
   const auto open = [&setup, arm](const driver::FoundArm& found) {

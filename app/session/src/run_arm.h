@@ -10,6 +10,7 @@
 #include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_policy.h"
+#include "thimble/scene/real_arm.h"
 #include "thimble/session/session.h"
 
 namespace thimble::session {
@@ -29,7 +30,7 @@ using FindArms = std::function<driver::Result<std::vector<driver::FoundArm>>()>;
 /// Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<RunArm> choose_run_arm(
     const std::string& device, const scene::ArmPolicyRequest& request,
-    const FindArms& find_arms = [] { return driver::find_arms(); });
+    const FindArms& find_arms = [] { return scene::find_arms(); });
 
 /// Arms of a run, of a scene with one or with several arms.
 struct THIMBLE_EXPORT RunArms {
@@ -48,6 +49,6 @@ struct THIMBLE_EXPORT RunArms {
 /// Real-time: never from the servo thread.
 THIMBLE_EXPORT driver::Result<RunArms> choose_run_arms(
     const std::vector<std::string>& devices, const scene::ArmPolicyRequest& request,
-    const FindArms& find_arms = [] { return driver::find_arms(); });
+    const FindArms& find_arms = [] { return scene::find_arms(); });
 
 }  // namespace thimble::session

@@ -4,17 +4,17 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 
-#include "log/console.h"
 #include "log/logger.h"
 #include "setup.h"
 #include "thimble/driver/heat_guard.h"
 
 namespace thimble::session {
 
-std::string progress_line(const driver::TickRecord& record, double total) {
+std::string run_state(const driver::TickRecord& record, double total) {
   const double force = Eigen::Map<const Eigen::Vector3d>(record.f_sent_W.data()).norm();
-  return fmt::format("{:6.1f} {}s   {:<8}  force {:5.2f} N   depth {:5.2f} mm ",
+  return fmt::format("{:.1f} {}s   {:<8}  force {:5.2f} N   depth {:5.2f} mm",
                      static_cast<double>(record.time_ns) * 1e-9,
                      total > 0 ? fmt::format("of {:.1f} ", total) : "",
                      record.stage == driver::DeviceStage::kWaiting ? "not held"
@@ -45,14 +45,15 @@ void keep_black_boxes(Session& session, bool run_is_over) {
 }
 
 RunAttendance::RunAttendance(Session& session, ReplugWatches* watch, ViewerRequestHandler* handler,
-                             bool on_terminal)
+                             bool shows_progress)
     : session_(session),
       watch_(watch),
       handler_(handler),
-      on_terminal_(on_terminal),
       total_(static_cast<double>(session.setup().ticks()) *
              static_cast<double>(session.setup().period_ns()) * 1e-9),
-      withdrawn_(session.arms()) {}
+      withdrawn_(session.arms()) {
+  if (shows_progress) progress_.emplace("run", total_ > 0 ? 0 : std::nan(""));
+}
 
 void RunAttendance::warn_of_compensation() {
   for (std::size_t arm = 0; arm < withdrawn_.size(); ++arm) {
@@ -78,11 +79,20 @@ void RunAttendance::step() {
   if (const std::string hot = heat_.check(record); !hot.empty()) {
     scene::logger().warn("{}", hot);
   }
-  if (on_terminal_) scene::console().show(progress_line(record, total_));
+  show(record);
 }
 
-void RunAttendance::clear() const {
-  if (on_terminal_) scene::console().show("");
+void RunAttendance::show(const driver::TickRecord& record) {
+  if (!progress_ || !progress_->is_shown()) return;
+  const std::int64_t until_ns = record.time_ns + session_.setup().period_ns();
+  if (total_ > 0) progress_->set_share(1e-9 * static_cast<double>(until_ns) / total_);
+  progress_->set_state(run_state(record, total_));
+}
+
+void RunAttendance::clear() {
+  driver::TickRecord last;
+  if (session_.newest().load(last)) show(last);
+  progress_.reset();
 }
 
 }  // namespace thimble::session

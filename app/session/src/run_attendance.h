@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "log/progress.h"
 #include "replug_watch.h"
 #include "share/viewer_request_handler.h"
 #include "thimble/driver/export.h"
@@ -13,8 +14,8 @@
 
 namespace thimble::session {
 
-/// Returns the progress of a run as a line for the terminal. `total`: s; 0 if unknown.
-std::string progress_line(const driver::TickRecord& record, double total);
+/// Returns the state of a run for its progress. `total`: s; 0 if unknown.
+std::string run_state(const driver::TickRecord& record, double total);
 
 /// Warning about the heat of an arm's motors, given once per run.
 class HeatWarning {
@@ -36,23 +37,24 @@ THIMBLE_EXPORT void keep_black_boxes(Session& session, bool run_is_over);
 class THIMBLE_EXPORT RunAttendance {
  public:
   /// Constructs the tasks of a session. `watch` and `desk` may be null, and must outlive it.
-  /// `on_terminal`: standard error is a terminal.
+  /// `shows_progress`: progress is shown as the process has chosen (scene::choose_progress).
   RunAttendance(Session& session, ReplugWatches* watch, ViewerRequestHandler* handler,
-                bool on_terminal);
+                bool shows_progress);
 
   /// Runs all tasks once; call it about ten times a second.
   void step();
-  /// Removes the progress line after the run.
-  void clear() const;
+  /// Ends the progress after the run.
+  void clear();
 
  private:
   void warn_of_compensation();
+  void show(const driver::TickRecord& record);
 
   Session& session_;
   ReplugWatches* watch_;
   ViewerRequestHandler* handler_;
-  bool on_terminal_;
   double total_;  // Duration, s; 0: unknown.
+  std::optional<scene::Progress> progress_;
   // Number of withdrawals of each arm's gravity compensation reported so far.
   std::vector<std::uint64_t> withdrawn_;
   HeatWarning heat_;

@@ -151,7 +151,22 @@ Session::~Session() = default;
 
 driver::Result<std::unique_ptr<Session>> Session::prepare(const std::filesystem::path& scene,
                                                           const SessionOptions& options) {
-  auto setup = Setup::prepare(scene, options);
+  return from_setup(Setup::prepare(scene, options), options);
+}
+
+driver::Result<std::unique_ptr<Session>> Session::prepare(const scene::SceneBuilder& scene,
+                                                          const SessionOptions& options) {
+  if (options.share || options.share_out) {
+    return driver::Error{
+        "A scene made in code cannot have viewers, which read its file; save it "
+        "(SceneBuilder::save) "
+        "and open the file."};
+  }
+  return from_setup(Setup::prepare(scene, options), options);
+}
+
+driver::Result<std::unique_ptr<Session>> Session::from_setup(
+    driver::Result<std::unique_ptr<Setup>> setup, const SessionOptions& options) {
   if (!setup) return setup.error();
   std::unique_ptr<Session> session(new Session);
   session->parts_ = std::make_unique<Parts>(std::move(setup).value());
@@ -172,7 +187,16 @@ driver::Result<std::unique_ptr<Session>> Session::prepare(const std::filesystem:
 
 driver::Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& scene,
                                                        const SessionOptions& options) {
-  auto session = prepare(scene, options);
+  return open_prepared(prepare(scene, options));
+}
+
+driver::Result<std::unique_ptr<Session>> Session::open(const scene::SceneBuilder& scene,
+                                                       const SessionOptions& options) {
+  return open_prepared(prepare(scene, options));
+}
+
+driver::Result<std::unique_ptr<Session>> Session::open_prepared(
+    driver::Result<std::unique_ptr<Session>> session) {
   if (!session) return session;
   if (auto opened = (*session)->open_arm(); !opened) return opened.error();
   if (!(*session)->setup().any_real()) return session;
@@ -273,6 +297,13 @@ std::optional<driver::ServoEnd> Session::step(const std::atomic<bool>& stop) noe
 
 bool Session::lead_hand(const Eigen::Vector3d& p_WH) noexcept {
   return parts_->setup->simulation()->lead(p_WH);
+}
+
+bool Session::hold_buttons(std::uint16_t buttons) noexcept {
+  scene::ArmSimulation* const simulation = parts_->setup->simulation();
+  if (simulation == nullptr || !parts_->setup->buttons_allowed()) return false;
+  simulation->hold_buttons(buttons);
+  return true;
 }
 
 std::vector<Knob> Session::knobs() const {

@@ -12,8 +12,9 @@
 #include "log/logger.h"
 #include "scene_poses.h"
 #include "text_file.h"
+#include "thimble/driver/device.h"
+#include "thimble/scene/arm_file.h"
 #include "thimble/scene/build_info.h"
-#include "thimble/scene/device_settings.h"
 #include "thimble/scene/hand_route.h"
 #include "thimble/scene/quality.h"
 #include "thimble/scene/real_arm.h"
@@ -35,16 +36,30 @@ bool any_real_in(const SessionOptions& options) {
 
 driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::path& scene,
                                                       const SessionOptions& options) {
-  if (options.real_arm && !options.terms) {
-    return driver::Error{"A real arm requires `terms` (scene::find_arm_policy)."};
-  }
   auto found = scene::find_scene(scene.string());
   if (!found) return found.error();
   std::unique_ptr<Setup> setup(new Setup);
   setup->plan_.scene_file = std::move(found).value();
+  return prepare(std::move(setup), options);
+}
+
+driver::Result<std::unique_ptr<Setup>> Setup::prepare(const scene::SceneBuilder& scene,
+                                                      const SessionOptions& options) {
+  std::unique_ptr<Setup> setup(new Setup);
+  setup->plan_.scene_file = scene.file();
+  setup->plan_.built = std::make_shared<const scene::SceneBuilder>(scene);
+  return prepare(std::move(setup), options);
+}
+
+driver::Result<std::unique_ptr<Setup>> Setup::prepare(std::unique_ptr<Setup> setup,
+                                                      const SessionOptions& options) {
+  if (options.real_arm && !options.terms) {
+    return driver::Error{"A real arm requires `terms` (scene::find_arm_policy)."};
+  }
   setup->plan_.firmware = options.firmware;
   setup->plan_.hand_by_mouse = options.hand_by_mouse;
   setup->plan_.hand_by_program = options.hand_by_program;
+  setup->plan_.buttons_allowed = options.buttons_by_program || options.share || options.share_out;
   setup->plan_.homed = options.homed;
   setup->plan_.hold = options.hold;
   setup->plan_.endless = options.endless;
@@ -65,8 +80,10 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(const std::filesystem::pat
   const std::vector<std::string>& notes = setup->objects_->notes();
   setup->plan_.warnings.insert(setup->plan_.warnings.end(), notes.begin(), notes.end());
   if (setup->objects_->moving().size() > ScenePoses::kMax) {
-    return driver::Error{fmt::format("{}: at most {} objects may move.",
-                                     setup->plan_.scene_file.string(), ScenePoses::kMax)};
+    return driver::Error{fmt::format(
+        "{}: at most {} objects may move in the loop. Simulate more of them beside it, at a lower "
+        "rate (guide, slow_simulation).",
+        setup->plan_.scene_file.string(), ScenePoses::kMax)};
   }
   if (auto simulated = setup->simulate_arms(); !simulated) return simulated.error();
   if (!options.meshes)
@@ -109,12 +126,13 @@ driver::Result<void> Setup::read(const SessionOptions& options) {
     return driver::Error{fmt::format("Unknown quality \"{}\"; choose one of {}.", options.quality,
                                      fmt::join(scene::kQualityNames, ", "))};
   }
-  auto scene = scene::load_scene(
-      plan_.scene_file,
-      {.arm = options.real_arm ? options.terms->arm.path : options.arm_file,
-       .mesh_folder = options.mesh_folder,
-       .rate_factor = real ? 1 : options.rate_factor * scene::rate_factor_of(*quality),
-       .several_arms = options.several_arms});
+  const scene::SceneReading reading{
+      .arm = options.real_arm ? options.terms->arm.path : options.arm_file,
+      .mesh_folder = options.mesh_folder,
+      .rate_factor = real ? 1 : options.rate_factor * scene::rate_factor_of(*quality),
+      .several_arms = options.several_arms};
+  auto scene =
+      plan_.built ? plan_.built->build(reading) : scene::load_scene(plan_.scene_file, reading);
   if (!scene) return scene.error();
   plan_.scene = std::make_shared<scene::Scene>(std::move(scene).value());
   plan_.inputs = std::make_shared<scene::FileHashes>(plan_.scene->inputs);
@@ -123,7 +141,8 @@ driver::Result<void> Setup::read(const SessionOptions& options) {
   plan_.choices = {.quality = options.quality,
                    .budget = options.budget,
                    .rate_factor = plan_.scene->rate_factor,
-                   .adjusted = static_cast<bool>(options.adjust)};
+                   .adjusted = options.adjust || (plan_.built && plan_.built->has_own_effects())};
+  plan_.scene->arms.front().buttons = options.buttons;
   if (options.adjust) options.adjust(*plan_.scene);
   if (auto used = use_real_arms(options); !used) return used;
   plan_.seed = options.seed.value_or(plan_.scene->seed);
@@ -265,6 +284,8 @@ driver::Result<void> Setup::simulate_arms() {
     auto simulation = simulate(one.arm, one.arm_file, one.hand, one.name, plan_.seed + i, start);
     if (!simulation) return simulation.error();
     arms_[i].simulation = std::move(simulation).value();
+    arms_[i].simulation->plan_buttons(one.buttons);
+    if (plan_.buttons_allowed) arms_[i].simulation->allow_buttons();
     if (auto inside = find_start_inside(i, start); !inside.empty()) {
       plan_.warnings.push_back(std::move(inside));
     }
@@ -410,7 +431,7 @@ RecordingInfo Setup::recording_info(std::size_t arm) const {
   const auto& file = plan_.scene->arms[arm].arm_file;
   return {.scene = plan_.scene->name,
           .scene_file = full_path(plan_.scene_file),
-          .scene_text = scene::text_of(plan_.scene_file),
+          .scene_text = plan_.built ? plan_.built->text() : scene::text_of(plan_.scene_file),
           .arm = arm_file(arm).name,
           .arm_file = full_path(file),
           .arm_text = scene::text_of(file),

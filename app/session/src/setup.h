@@ -21,6 +21,7 @@
 #include "thimble/driver/result.h"
 #include "thimble/scene/arm_policy.h"
 #include "thimble/scene/arm_simulation.h"
+#include "thimble/scene/scene_builder.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/scene_objects.h"
 #include "thimble/scene/shared_meshes.h"
@@ -33,6 +34,8 @@ namespace thimble::session {
 /// of the same plan.
 struct RunPlan {
   std::filesystem::path scene_file;
+  /// Scene made in code instead of `scene_file`; null if there is a file.
+  std::shared_ptr<const scene::SceneBuilder> built;
   /// Scene, shared by similar sessions; changed only while it is read.
   std::shared_ptr<scene::Scene> scene;
   std::shared_ptr<scene::FileHashes> inputs;  ///< Hashes of the scene's inputs.
@@ -46,6 +49,7 @@ struct RunPlan {
   bool endless = false;
   bool hand_by_mouse = false;
   bool hand_by_program = false;
+  bool buttons_allowed = false;
   bool homed = false;
   driver::HoldToRun hold{};
   std::uint64_t seed = 0;
@@ -84,6 +88,9 @@ class THIMBLE_EXPORT Setup {
   /// the simulated hand's path and builds the objects. The error names the file and the fix.
   /// Real-time: never from the servo thread.
   static driver::Result<std::unique_ptr<Setup>> prepare(const std::filesystem::path& scene,
+                                                        const SessionOptions& options);
+  /// Does the same for a scene made in code.
+  static driver::Result<std::unique_ptr<Setup>> prepare(const scene::SceneBuilder& scene,
                                                         const SessionOptions& options);
   /// Does the same for another run of `other` with a new seed. The scene as read before, its meshes
   /// and the hands' paths are shared. Fails if an arm of `other` is real or it uses the caller's
@@ -145,6 +152,8 @@ class THIMBLE_EXPORT Setup {
   const driver::HoldToRun& hold() const noexcept { return plan_.hold; }
   /// Returns whether the run continues until it is stopped, even after a fault.
   bool endless() const noexcept { return plan_.endless; }
+  /// Returns whether viewers or a program may hold buttons of simulated arms.
+  bool buttons_allowed() const noexcept { return plan_.buttons_allowed; }
   /// Returns whether a viewer moves the simulated hand.
   bool hand_by_mouse() const noexcept { return plan_.hand_by_mouse; }
   /// Returns whether a viewer or a program moves the simulated hand instead of the scene's path.
@@ -180,6 +189,8 @@ class THIMBLE_EXPORT Setup {
 
  private:
   Setup() = default;
+  static driver::Result<std::unique_ptr<Setup>> prepare(std::unique_ptr<Setup> setup,
+                                                        const SessionOptions& options);
   driver::Result<void> read(const SessionOptions& options);
   driver::Result<void> check_several(const SessionOptions& options) const;
   driver::Result<void> use_real_arms(const SessionOptions& options);

@@ -17,7 +17,9 @@ constexpr int kTicksBetweenChecks = 20;  // between two checks of the terminal; 
 
 StartPose StartPose::of(const scene::ArmFile& file, driver::ArmKind kind) {
   if (kind == driver::ArmKind::kFalcon) return {file.workspace, std::nullopt};
-  const auto arm = driver::make_arm(kind, file.model);
+  // Encoders that know their angle do not count from the home pose.
+  if (file.home.how == scene::HomeMethod::kAbsolute) return {file.workspace, std::nullopt};
+  const auto arm = driver::make_arm(kind, file.model, file.wire.get());
   // The vendor's software calibrates its arm.
   if (arm == nullptr) return {file.workspace, std::nullopt};
   return {file.workspace, file.p_WB + file.R_WB * arm->pose({}).p_BT};

@@ -8,6 +8,7 @@
 
 #include "log/logger.h"
 #include "log/printed_text.h"
+#include "log/progress.h"
 #include "report/gnuplot.h"
 #include "report/picture_style.h"
 #include "studies/accuracy/accuracy_axis.h"
@@ -16,7 +17,6 @@
 #include "studies/accuracy/axis_words.h"
 #include "studies/accuracy/measure_axis.h"
 #include "studies/run_pages.h"
-#include "studies/sweep/progress_bar.h"
 #include "studies/sweep/sweep.h"
 #include "studies/sweep/sweep_journal.h"
 #include "text/nearest_word.h"
@@ -75,14 +75,15 @@ class AxisSweep {
       all += steps;
       done += numbers[i].empty() ? 0 : steps;
     }
-    ProgressBar bar(done, all);
-    bar.show(done);
+    scene::Progress progress("study accuracy",
+                             static_cast<double>(done) / static_cast<double>(all));
     options.advance = [&](int steps) {
       done += static_cast<std::size_t>(steps);
-      bar.show(done);
+      progress.set_share(done, all);
     };
     std::vector<std::unique_ptr<MeasuredAxis>> measured;
     for (std::size_t i = 0; i < axes_.size(); ++i) {
+      progress.set_state(axes_[i].name);
       const bool kept = !numbers[i].empty();
       auto axis =
           std::make_unique<MeasuredAxis>(kept ? with_numbers(std::move(axes_[i]), numbers[i])

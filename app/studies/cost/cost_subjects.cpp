@@ -23,8 +23,14 @@ struct Sample {
 };
 constexpr Sample kSamples[] = {
     {"friction", "coefficient: 0.5"},
+    {"formula",
+     "direction: sliding, parameters: [{name: b, value: 2, unit: N s/m}, {name: v, value: 0.1, "
+     "unit: "
+     "m/s}]"},
     {"sines", "waves: [{amplitude: 0.0001, wavelength: 0.002, direction: [1, 0, 0]}]"},
 };
+
+constexpr std::string_view kFormula = "\"-b * speed * tanh(speed / v)\"";
 
 std::string joined(std::string_view a, char between, std::string_view b) {
   std::string name(a);
@@ -62,7 +68,8 @@ Built build_effect(const render::EffectKind& kind) {
       settings.append(", ").append(sample.settings);
   }
   std::string text = "effects:\n  - {";
-  text.append(kind.group).append(": ").append(kind.name).append(settings).append("}\n");
+  text.append(kind.group).append(": ").append(kind.free_text ? kFormula : kind.name);
+  text.append(settings).append("}\n");
   auto yaml = scene::YamlFile::parse(text, std::string(kind.name));
   if (!yaml) return yaml.error();
   render::SurfaceChoice surface{.spring = kCostSpring, .effects = {}};

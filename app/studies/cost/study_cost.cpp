@@ -16,12 +16,12 @@
 
 #include "log/logger.h"
 #include "log/printed_text.h"
+#include "log/progress.h"
 #include "report/gnuplot.h"
 #include "report/picture_style.h"
 #include "studies/cost/cost_subjects.h"
 #include "studies/cost/instruction_count.h"
 #include "studies/cost/memory_trades.h"
-#include "studies/sweep/progress_bar.h"
 
 namespace thimble::studies {
 namespace {
@@ -211,13 +211,16 @@ std::vector<session::Figure> figures_of(const std::vector<Cost>& costs, const Co
   return figures;
 }
 
+// Share of the time that the strokes take; the rest is counting [chosen].
+constexpr double kStrokesShare = 0.2;
+
 /// Counts the instructions of all subjects, if valgrind is installed.
-void count_all(std::vector<Cost>& costs) {
-  ProgressBar bar(0, costs.size());
+void count_all(std::vector<Cost>& costs, scene::Progress& progress) {
   std::size_t done = 0;
   for (Cost& cost : costs) {
-    bar.show(done++);
     cost.instructions = instructions_per_tick(cost.subject->name);
+    progress.set_share(kStrokesShare + (1 - kStrokesShare) * static_cast<double>(++done) /
+                                           static_cast<double>(costs.size()));
     if (cost.instructions) continue;
     scene::logger().warn("Instructions are not counted: valgrind is not installed, or it failed.");
     return;
@@ -242,10 +245,13 @@ driver::Result<std::vector<session::Figure>> study_cost(const std::filesystem::p
     costs.push_back(std::move(cost));
   }
   // Subjects alternate, so that other load of the machine affects all equally.
+  scene::Progress progress("study cost");
   for (int round = 0; round < kRounds; ++round) {
     for (Cost& cost : costs) stroke(cost, states);
+    progress.set_share(kStrokesShare * (round + 1) / kRounds);
   }
-  count_all(costs);
+  count_all(costs, progress);
+  progress.set_share(1.0);
   const Cost& bare = *std::find_if(costs.begin(), costs.end(), [](const Cost& cost) {
     return cost.subject->name == kBareSubject;
   });

@@ -8,6 +8,7 @@
 
 #include "log/logger.h"
 #include "log/printed_text.h"
+#include "log/progress.h"
 #include "report/gnuplot.h"
 #include "report/picture_style.h"
 #include "stability/signal.h"
@@ -19,8 +20,9 @@
 namespace thimble::studies {
 namespace {
 
-constexpr int kDelays = 4;  // 0 to 3 ticks
-constexpr int kStops = 40;  // positions within one count [PHYSICS 7, case 14]
+constexpr int kDelays = 4;                  // 0 to 3 ticks
+constexpr std::size_t kWorstStopSteps = 4;  // its time relative to that of a case [chosen]
+constexpr int kStops = 40;                  // positions within one count [PHYSICS 7, case 14]
 
 std::string table_row(const FrictionCase& which, const FrictionMeasures& found) {
   return fmt::format(
@@ -119,12 +121,16 @@ driver::Result<std::vector<session::Figure>> study_friction(const std::filesyste
       "um.\n\n                                    after a stop                  "
       "creep    mean   slow    tremor\n    friction                          force   "
       " path    Hz   held     force   mean   mean     force\n");
+  scene::Progress progress("study friction");
+  const std::size_t all = friction_cases().size() * kDelays + kWorstStopSteps;
+  std::size_t measured = 0;
   for (const FrictionCase& which : friction_cases()) {
     for (int delay = 0; delay < kDelays; ++delay) {
       stability::FrictionRigSettings rig;
       rig.delay_ns = delay * rig.period_ns;
       FrictionMeasures found = measure(which, rig);
       csv += csv_row(which, delay, found);
+      progress.set_share(++measured, all);
       if (delay > 0) continue;
       scene::print_format("%s", table_row(which, found).c_str());
       add_measures(figures, which, found);
@@ -142,6 +148,7 @@ driver::Result<std::vector<session::Figure>> study_friction(const std::filesyste
       std::find_if(friction_cases().begin(), friction_cases().end(),
                    [](const FrictionCase& which) { return which.name == "bristle"; });
   const WorstStop worst = worst_stop(*chosen);
+  progress.set_share(1.0);
   figures.push_back({"bristle.worst_of_160_stops.force", worst.force, "N", "<= 0.001"});
   figures.push_back({"bristle.worst_of_160_stops.way", worst.way, "m", "<= 5e-08"});
   figures.push_back({"bristle.worst_of_160_stops.sign_changes", worst.sign_changes, "1/s", "== 0"});

@@ -14,11 +14,11 @@
 #include "body/spring/mesh_springs.h"
 #include "files/scanned_meshes.h"
 #include "log/printed_text.h"
+#include "log/progress.h"
 #include "report/gnuplot.h"
 #include "report/picture_style.h"
 #include "studies/integrators/membrane.h"
 #include "studies/integrators/poked_body.h"
-#include "studies/sweep/progress_bar.h"
 #include "thimble/render/mesh/mesh_file.h"
 
 namespace thimble::studies {
@@ -119,14 +119,14 @@ template <int kDof>
 driver::Result<Diagram> measure_all(const PokedBody<kDof>& body, bool membrane, Diagram diagram) {
   std::size_t all = 0, done = 0;
   for (const Line& line : lines(membrane)) all += line.substeps.size();
-  ProgressBar bar(0, all);
+  scene::Progress progress("study integrators: " + diagram.name);
   for (const Line& line : lines(membrane)) {
     std::vector<WorkPoint> points;
     for (const int substeps : line.substeps) {
-      bar.show(done++);
       auto point = measure(body, line.scheme, substeps);
       if (!point) return point.error();
       points.push_back(*std::move(point));
+      progress.set_share(++done, all);
     }
     diagram.lines.push_back(std::move(points));
   }

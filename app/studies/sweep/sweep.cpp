@@ -15,7 +15,7 @@
 #include <thread>
 #include <utility>
 
-#include "studies/sweep/progress_bar.h"
+#include "log/progress.h"
 #include "studies/sweep/sweep_journal.h"
 
 namespace thimble::studies {
@@ -138,7 +138,7 @@ class Lead {
       : sweep_(sweep), journal_(journal), numbers_(numbers), work_(missing(), stop) {}
 
   void run(int jobs, SweepTeam* team) {
-    ProgressBar bar(done_, numbers_.size());
+    scene::Progress progress("study " + sweep_.name, share_done());
     int busy = jobs;
     std::vector<std::jthread> threads;
     threads.reserve(static_cast<std::size_t>(jobs));
@@ -155,7 +155,7 @@ class Lead {
     int helpers = team != nullptr ? team->size() - 1 : 0;
     std::unique_lock lock(mutex_);
     while (busy > 0 || helpers > 0) {
-      bar.show(done_);
+      progress.set_share(share_done());
       // A message of a helper does not wake this thread, so it polls often enough to keep helpers
       // busy.
       changed_.wait_for(lock, std::chrono::milliseconds(helpers > 0 ? 1 : 100),
@@ -165,12 +165,17 @@ class Lead {
       }
       lock.lock();
     }
+    progress.set_share(share_done());
   }
 
   Work& work() { return work_; }
   bool complete() const { return done_ == numbers_.size(); }
 
  private:
+  double share_done() const {
+    return numbers_.empty() ? 1 : static_cast<double>(done_) / static_cast<double>(numbers_.size());
+  }
+
   std::vector<std::size_t> missing() {
     std::vector<std::size_t> cells;
     for (std::size_t cell = 0; cell < numbers_.size(); ++cell) {

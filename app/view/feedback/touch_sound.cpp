@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "log/progress.h"
+
 namespace thimble::view {
 namespace {
 
@@ -145,7 +147,12 @@ void TouchSound::take(const driver::TickRecord& tick, std::vector<float>& sample
 std::vector<float> sound_of(const std::vector<driver::TickRecord>& ticks, std::int64_t period_ns) {
   TouchSound sound(period_ns);
   std::vector<float> samples;
-  for (const driver::TickRecord& tick : ticks) sound.take(tick, samples);
+  scene::Progress progress("sound");
+  std::size_t done = 0;
+  for (const driver::TickRecord& tick : ticks) {
+    sound.take(tick, samples);
+    progress.set_share(++done, ticks.size());
+  }
   return samples;
 }
 

@@ -19,6 +19,7 @@ inline constexpr Colour kArmColour = colour_of(0x8A94A0);        // slate
 inline constexpr Colour kJointColour = colour_of(0x4A525C);
 inline constexpr Colour kNormalColour = colour_of(0x009E73);    // bluish green: contact normal
 inline constexpr Colour kFrictionColour = colour_of(0xCC79A7);  // reddish purple
+inline constexpr Colour kColliderColour = colour_of(0x6A3D9A);  // violet: shapes that collide
 inline constexpr Colour kSkyColour = colour_of(0xFBFCFD);       // background at the top
 inline constexpr Colour kGroundColour = colour_of(0xE4E8EC);    // background at the bottom; ground
 inline constexpr Colour kGridColour = colour_of(0x9AA5B1);

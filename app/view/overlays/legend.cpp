@@ -40,6 +40,13 @@ Legend legend_of(const DrawnScene& scene, const DrawnMoment& moment, const Paint
     legend.lines.push_back({kNormalColour, "contact normal"});
     legend.lines.push_back({kFrictionColour, "force along the surface"});
   }
+  if (choice.colliders) {
+    const bool any =
+        std::any_of(scene.objects.begin(), scene.objects.end(),
+                    [](const auto& object) { return !object.collider.triangles.empty(); });
+    legend.lines.push_back(
+        {kColliderColour, any ? "shapes that collide" : "no shapes that collide"});
+  }
   if (choice.surfaces) {
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
       const DrawnObject& object = scene.objects[i];
@@ -78,18 +85,23 @@ float write_scale(float left, float y, float width, Theme theme, const std::stri
 
 }  // namespace
 
-void write_legend(const Legend& legend, Theme theme, const ScreenPart& part) {
+ScreenPart write_legend(const Legend& legend, Theme theme, const ScreenPart& part) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const float size = ImGui::GetFontSize();
   const float left = part.x + 0.7F * size;
   float y = part.y + 0.7F * size;
   const float width = std::min(9 * size, 0.4F * part.width);
+  float covered = legend.strongest > 0 || !legend.maps.empty() ? width : 0;
+  const auto cover = [&covered](const std::string& text, float indent) {
+    covered = std::max(covered, indent + ImGui::CalcTextSize(text.c_str()).x);
+  };
   if (legend.strongest > 0) {
     y += write_scale(left, y, width, theme, "0", plain_force(legend.strongest),
                      [](float share) { return force_colour(static_cast<double>(share)); });
   }
   for (const Legend::Scale& map : legend.maps) {
     write_rimmed({left, y}, theme, colours_of(theme).text, map.text);
+    cover(map.text, 0);
     y += 1.35F * size;
     const Colour& own = object_colour(map.object);
     y += write_scale(left, y, width, theme, map.min, map.max,
@@ -99,8 +111,11 @@ void write_legend(const Legend& legend, Theme theme, const ScreenPart& part) {
     list.AddRectFilled({left, y + 0.15F * size}, {left + 0.8F * size, y + 0.95F * size},
                        screen_colour(line.colour));
     write_rimmed({left + 1.2F * size, y}, theme, colours_of(theme).text, line.text);
+    cover(line.text, 1.2F * size);
     y += 1.35F * size;
   }
+  if (!(covered > 0)) return {part.x, part.y, 0, 0};
+  return {part.x, part.y, left - part.x + covered, y - part.y};
 }
 
 }  // namespace thimble::view

@@ -31,7 +31,8 @@ struct Legend {
 /// the servo thread.
 Legend legend_of(const DrawnScene& scene, const DrawnMoment& moment, const PaintChoice& choice);
 
-/// Draws a legend at the upper left of a part. Call between ImGui's NewFrame and Render.
-void write_legend(const Legend& legend, Theme theme, const ScreenPart& part);
+/// Draws a legend at the upper left of a part; returns the part that it covers, without size if it
+/// is empty. Call between ImGui's NewFrame and Render.
+ScreenPart write_legend(const Legend& legend, Theme theme, const ScreenPart& part);
 
 }  // namespace thimble::view

@@ -24,6 +24,7 @@ TimeRange PlotPanel::range(const Plots& plots, const PlotTime& time) const {
   if (zoom_) return *zoom_;
   const TimeRange all = plots.kept();
   if (time.recorded) return all.width() > 0 ? all : TimeRange{all.begin, all.begin + 1};
+  if (const auto whole = plots.whole_run(time.duration)) return *whole;
   // Shows the position in the minute while looking back.
   return time.looked ? TimeRange{all.begin, std::max(all.end, all.begin + Plots::kShownSeconds)}
                      : plots.newest();

@@ -13,6 +13,7 @@ struct PlotTime {
   std::optional<double> looked;        ///< The moment that is shown, s; none: the newest of a run.
   bool recorded = false;               ///< The data are a complete recording.
   std::int64_t period_ns = 1'000'000;  ///< Period of the loop.
+  double duration = 0;                 ///< Planned duration of the run, s; 0: unknown.
 };
 
 /// Plots below each other over the same time: mouse actions apply to all of them.
@@ -29,8 +30,8 @@ class PlotPanel {
   /// Shows or hides a channel.
   void show(Channel channel, bool shown) { shown_[static_cast<std::size_t>(channel)] = shown; }
   bool shows(Channel channel) const { return shown_[static_cast<std::size_t>(channel)]; }
-  /// Returns the visible range of time: the zoomed part, otherwise the newest of a run, or all of a
-  /// recording.
+  /// Returns the visible range of time: the zoomed part; otherwise the whole duration of a run or
+  /// recording. Of a run that is longer than the plots keep, it is the newest part.
   TimeRange range(const Plots& plots, const PlotTime& time) const;
   bool is_zoomed() const { return zoom_.has_value(); }
 

@@ -75,6 +75,12 @@ TimeRange Plots::newest() const {
   return {end - kShownSeconds, end};
 }
 
+std::optional<TimeRange> Plots::whole_run(double duration) const {
+  const TimeRange all = kept();
+  if (!(duration > 0 && duration <= kSeconds && all.begin >= 0 && all.end <= duration)) return {};
+  return TimeRange{0, duration};
+}
+
 std::size_t Plots::first_at(double time) const {
   const auto found =
       std::lower_bound(samples_.begin(), samples_.end(), time,

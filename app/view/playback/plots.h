@@ -50,7 +50,7 @@ TimeRange shifted(const TimeRange& range, double by, const TimeRange& all);
 class Plots {
  public:
   static constexpr double kSeconds = 60;      ///< Kept duration of a run, as in MomentRing.
-  static constexpr double kShownSeconds = 8;  ///< Duration shown by default.
+  static constexpr double kShownSeconds = 8;  ///< Duration shown of a longer run.
   /// Maximum number of ticks kept of a run: a minute at 8 kHz, 23 MB. [chosen]
   static constexpr std::size_t kSamplesMax = 480'000;
 
@@ -65,8 +65,11 @@ class Plots {
 
   /// Returns the time range of the kept ticks, s; both ends 0 if there is none.
   TimeRange kept() const;
-  /// Returns the range shown by default: the last kShownSeconds.
+  /// Returns the last kShownSeconds.
   TimeRange newest() const;
+  /// Returns the range of a whole run of a planned duration (s), so that the axis does not move;
+  /// none if it is longer than kSeconds, or if ticks are outside of it.
+  std::optional<TimeRange> whole_run(double duration) const;
   /// Returns a channel's value (SI) at the last tick that is no later than `time` (s); none before
   /// the first and after the last.
   std::optional<double> value_at(Channel channel, double time) const;

@@ -10,6 +10,8 @@
 #include <array>
 #include <cmath>
 
+#include "view/run_buttons.h"
+
 namespace thimble::view {
 namespace {
 
@@ -61,6 +63,12 @@ void draw_sign(ImDrawList& list, Sign sign, const ImVec2& middle, float r) {
   }
 }
 
+/// Plays or stops. A run that has ended is played from its oldest moment on.
+void play_or_stop(PlayHead& head) {
+  if (head.live()) head.to_start();
+  head.toggle();
+}
+
 bool sign_button(const char* id, Sign sign, const char* about) {
   const float side = ImGui::GetFrameHeight();
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -72,6 +80,32 @@ bool sign_button(const char* id, Sign sign, const char* about) {
   return pressed;
 }
 
+/// Returns the run whose pause and speed the time line sets: the one at its newest moment.
+session::SharedReader* live_run(TouchSource& source) {
+  session::SharedReader* const reader = source.reader();
+  const bool live =
+      reader != nullptr && source.head().live() && reader->state() != session::RunState::kEnded;
+  return live ? reader : nullptr;
+}
+
+void draw_pause(TouchSource& source) {
+  PlayHead& head = source.head();
+  if (session::SharedReader* const run = live_run(source)) {
+    const bool paused = run->pause_asked();
+    const char* about = paused ? "continue the run (space)"
+                        : run->scene().wall_clock
+                            ? "pause the run (space): fades the force out; the arm's time "
+                              "continues, and its ticks count as paused"
+                            : "pause the run (space)";
+    if (sign_button("##play", paused ? Sign::kPlay : Sign::kStop, about)) run->ask_pause(!paused);
+    return;
+  }
+  const Sign sign = head.plays() ? Sign::kStop : Sign::kPlay;
+  if (sign_button("##play", sign, head.plays() ? "stop (space)" : "play (space)")) {
+    play_or_stop(head);
+  }
+}
+
 void draw_buttons(TouchSource& source) {
   PlayHead& head = source.head();
   const bool run = head.of_a_run();
@@ -81,13 +115,7 @@ void draw_buttons(TouchSource& source) {
   if (sign_button("##back", Sign::kBack, run ? "one frame back (left)" : "one tick back (left)")) {
     head.stop_at(source.time_of_step(-1));
   }
-  const Sign sign = head.plays() || head.live() ? Sign::kStop : Sign::kPlay;
-  const char* about = head.live() ? "hold this moment; the run continues"
-                      : run       ? "play"
-                                  : "play (space)";
-  if (sign_button("##play", sign, sign == Sign::kStop && !head.live() ? "stop" : about)) {
-    head.toggle();
-  }
+  draw_pause(source);
   if (sign_button("##on", Sign::kForward,
                   run ? "one frame forward (right)" : "one tick forward (right)")) {
     head.stop_at(source.time_of_step(1));
@@ -95,16 +123,31 @@ void draw_buttons(TouchSource& source) {
   if (sign_button("##end", Sign::kEnd, run ? "now (End)" : "end (End)")) head.to_end();
 }
 
-void draw_speed(PlayHead& head) {
+std::string draw_speed(TouchSource& source) {
   static constexpr std::array kSpeeds = {0.1, 0.25, 0.5, 1.0, 2.0, 4.0};
-  ImGui::SetNextItemWidth(4.6F * ImGui::GetFontSize());
-  const std::string now = fmt::format("{:g} x", head.speed());
-  if (!ImGui::BeginCombo("##speed", now.c_str())) return;
-  for (const double speed : kSpeeds) {
-    const std::string text = fmt::format("{:g} x", speed);
-    if (ImGui::Selectable(text.c_str(), speed == head.speed())) head.set_speed(speed);
+  PlayHead& head = source.head();
+  session::SharedReader* const run = live_run(source);
+  const std::string refused = run == nullptr ? "" : run->why_no_speed();
+  const double now = run == nullptr ? head.speed() : run->speed_asked();
+  std::string message;
+  ImGui::BeginDisabled(!refused.empty());
+  ImGui::SetNextItemWidth(5.2F * ImGui::GetFontSize());
+  if (ImGui::BeginCombo("##speed", fmt::format("{:.3g} x", now).c_str())) {
+    for (const double speed : kSpeeds) {
+      if (!ImGui::Selectable(fmt::format("{:g} x", speed).c_str(), speed == now)) continue;
+      if (run == nullptr) {
+        head.set_speed(speed);
+      } else if (const auto asked = run->ask_speed(speed); !asked) {
+        message = asked.error().message;
+      }
+    }
+    ImGui::EndCombo();
   }
-  ImGui::EndCombo();
+  ImGui::EndDisabled();
+  explain(run == nullptr ? "Speed of the playback (, and .)"
+                         : "Speed of the run; the ticks stay bit-identical (, and .)",
+          refused);
+  return message;
 }
 
 bool one_row(float width) {
@@ -187,21 +230,22 @@ bool TimeLine::take_key(int key, TouchSource& source, bool arrows) {
       head.to_end();
       return true;
     case GLFW_KEY_SPACE:
-      if (head.of_a_run()) return false;
-      head.toggle();
+      // With --hold-to-run key it enables the force.
+      if (source.reader() != nullptr && source.reader()->scene().hold_by_key) return false;
+      if (live_run(source) != nullptr) return false;
+      play_or_stop(head);
       return true;
     case GLFW_KEY_COMMA:
-      head.set_speed(head.speed() / 2);
-      return true;
     case GLFW_KEY_PERIOD:
-      head.set_speed(head.speed() * 2);
+      if (live_run(source) != nullptr) return false;
+      head.set_speed(key == GLFW_KEY_COMMA ? head.speed() / 2 : head.speed() * 2);
       return true;
     default:
       return false;
   }
 }
 
-void TimeLine::draw(const ScreenPart& part, TouchSource& source) {
+std::string TimeLine::draw(const ScreenPart& part, TouchSource& source) {
   PlayHead& head = source.head();
   const ImGuiStyle& style = ImGui::GetStyle();
   const ImVec2 pad{style.WindowPadding.x, 0.5F * style.WindowPadding.y};
@@ -213,7 +257,7 @@ void TimeLine::draw(const ScreenPart& part, TouchSource& source) {
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
   ImGui::PopStyleVar();
   draw_buttons(source);
-  draw_speed(head);
+  std::string message = draw_speed(source);
   const bool narrow = !one_row(part.width);
   const float row = ImGui::GetFrameHeight();
   const std::string words = words_of(head);
@@ -235,6 +279,7 @@ void TimeLine::draw(const ScreenPart& part, TouchSource& source) {
                                       words.c_str());
   draw_bar(bar, source);
   ImGui::End();
+  return message;
 }
 
 }  // namespace thimble::view

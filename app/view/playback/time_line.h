@@ -14,11 +14,14 @@ class TimeLine {
   /// Returns its height in a window's part of this width, pixels.
   static float height(float width);
 
-  /// Draws it into `part` and moves the head of `source` by the user's input.
-  static void draw(const ScreenPart& part, TouchSource& source);
+  /// Draws it into `part`. At the newest moment of a run, its pause button and its speed are those
+  /// of the run; at an earlier one, and in a recording, those of the playback. Returns why the run
+  /// refused a request; empty: it did not.
+  static std::string draw(const ScreenPart& part, TouchSource& source);
 
-  /// Handles a key (a GLFW_KEY_...) of the time line; returns whether it was one. Space is one only
-  /// for a recording: for a run it means pause. Without `arrows`, the arrow keys are not handled.
+  /// Handles a key (a GLFW_KEY_...) of the time line; returns whether it was one. Space, comma and
+  /// period are not at the newest moment of a run: there they mean the run. Without `arrows`, the
+  /// arrow keys are not handled.
   static bool take_key(int key, TouchSource& source, bool arrows = true);
 };
 

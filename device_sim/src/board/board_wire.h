@@ -7,6 +7,7 @@
 #include <span>
 
 #include "board/board_bytes.h"
+#include "firmware/core/controller.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arm.h"
 
@@ -32,6 +33,10 @@ struct BoardMessage {
 /// Encodes a report; returns its size.
 std::size_t encode_report(const BoardReport& report, const FirmwareSettings& settings,
                           std::span<std::byte, driver::kReportCapacity> bytes) noexcept;
+
+/// Reads the values that the reference firmware measures from a report that `encode_report` wrote
+/// with FirmwareSettings::reference: counters and button.
+void unpack_inputs(std::span<const std::byte> bytes, firmware::Inputs& inputs) noexcept;
 
 /// Decodes a message into `message`, which must be empty. Returns false, and leaves `message`
 /// unchanged, if the form of the bytes is unknown to the board.

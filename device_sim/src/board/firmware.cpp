@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
+#include <utility>
 
 #include "board/board_wire.h"
+#include "wires/wire_table.h"
 
 namespace thimble::device_sim {
 namespace {
@@ -33,6 +36,11 @@ bool rounds_surely(double counts, double error) noexcept {
   return std::abs(beyond_whole - 0.5) > error + kCountRounding;
 }
 
+/// Returns the time of the firmware's clock.
+std::uint32_t micros(std::int64_t time_ns) noexcept {
+  return static_cast<std::uint32_t>(time_ns / 1000);
+}
+
 }  // namespace
 
 driver::Result<Firmware> Firmware::make(const driver::ArmModel& real,
@@ -45,6 +53,16 @@ driver::Result<Firmware> Firmware::make(const driver::ArmModel& real,
     return driver::Error{
         "The simulated firmware supports only wires on which a board sends by itself: 14-byte "
         "reports, 8-byte reports or text lines."};
+  }
+  const bool described = settings.protocol == driver::ArmKind::kDescribed;
+  if (described != (settings.described != nullptr)) {
+    return driver::Error{
+        "The simulated firmware needs the protocol 'described' and a described wire together."};
+  }
+  if (described && settings.ideal_encoders) {
+    return driver::Error{
+        "The simulated firmware cannot have ideal encoders on a described wire. Use quantised "
+        "ones."};
   }
   if (!(settings.missed_edges >= 0 && settings.missed_edges <= 1)) {
     return driver::Error{
@@ -66,7 +84,23 @@ driver::Result<Firmware> Firmware::make(const driver::ArmModel& real,
         "The simulated arm's encoders need counts and ratios above zero. Set them in the arm "
         "file."};
   }
-  return Firmware(model, settings);
+  if (settings.reference && settings.ideal_encoders) {
+    return driver::Error{
+        "A simulated board with the reference firmware cannot have ideal encoders. Use quantised "
+        "ones."};
+  }
+  constexpr std::int64_t kPeriodMin_ns = 100'000, kPeriodMax_ns = 100'000'000;
+  if (settings.reference &&
+      !(settings.report_period_ns >= kPeriodMin_ns && settings.report_period_ns <= kPeriodMax_ns)) {
+    return driver::Error{"The reference firmware's report period must be from 0.1 to 100 ms."};
+  }
+  if (!described) return Firmware(model, settings);
+  // Motor values may be torques, which need the constants of the motors.
+  FirmwareSettings with_motors = settings;
+  auto wire = std::make_shared<driver::WireTable>(*settings.described);
+  wire->use_motors(model.drives);
+  with_motors.described = std::move(wire);
+  return Firmware(model, with_motors);
 }
 
 Firmware::Firmware(const driver::ArmModel& model, const FirmwareSettings& settings) noexcept
@@ -78,6 +112,9 @@ Firmware::Firmware(const driver::ArmModel& model, const FirmwareSettings& settin
   }
   max_counts_per_radian_ = counts_per_radian_.cwiseAbs().maxCoeff();
   countable_ = countable();
+  if (settings_.reference && settings_.program == nullptr) {
+    own_program_.emplace(reference_config(model, settings_));
+  }
 }
 
 Eigen::Vector3d Firmware::counts_at(const Eigen::Vector3d& q) const noexcept {
@@ -136,6 +173,13 @@ void Firmware::report(const Eigen::Vector3d& counts, const Eigen::Vector3d& gimb
 
 std::optional<BoardCounters> Firmware::receive(std::span<const std::byte> message,
                                                std::int64_t time_ns) noexcept {
+  if (has_program()) {
+    ++counters_.messages;
+    program().receive({reinterpret_cast<const std::uint8_t*>(message.data()), message.size()},
+                      micros(time_ns));
+    take_outputs(time_ns);
+    return {};
+  }
   BoardMessage decoded;
   if (!decode_message(message, settings_, decoded)) {
     ++counters_.malformed;
@@ -169,6 +213,7 @@ void Firmware::restart(const Eigen::Vector3d& q, const Eigen::Vector3d& gimbal) 
   button_ = false;
   amperes_.setZero();
   watchdog_due_ns_ = kNever_ns;
+  if (has_program()) program().restart();
   set_counters({}, q, gimbal);
 }
 
@@ -193,9 +238,43 @@ bool Firmware::countable() const noexcept {
          (preset_counts_.array().abs() < kCountable).all();
 }
 
+void Firmware::tick(std::int64_t time_ns, BoardBytes& bytes) noexcept {
+  firmware::Inputs inputs;
+  unpack_inputs(bytes, inputs);
+  inputs.supply_mV = health_.supply_mV;
+  inputs.temperature_dC = health_.temperature_dC;
+  inputs.encoder_error = health_.encoder_error;
+  bytes.size = firmware::kHidReportSize;
+  std::fill_n(bytes.bytes.begin(), bytes.size, std::byte{0});
+  program().tick(inputs, micros(time_ns),
+                 std::span<std::uint8_t, firmware::kHidReportSize>(
+                     reinterpret_cast<std::uint8_t*>(bytes.bytes.data()), bytes.size));
+  take_outputs(time_ns);
+}
+
+void Firmware::take_outputs(std::int64_t time_ns) noexcept {
+  const firmware::Outputs& outputs = program().outputs();
+  amperes_ = settings_.wiring.motors({outputs.amperes[0], outputs.amperes[1], outputs.amperes[2]});
+  if (!outputs.motors_on) {
+    if (watchdog_due_ns_ <= time_ns) ++counters_.watchdog_fired;
+    watchdog_due_ns_ = kNever_ns;
+    return;
+  }
+  // The firmware's clock has whole microseconds.
+  const std::int64_t since_us = static_cast<std::uint32_t>(micros(time_ns) - outputs.fed_us);
+  watchdog_due_ns_ = (time_ns / 1000 - since_us) * 1000 + settings_.watchdog_ns;
+}
+
 void Firmware::watch(std::int64_t time_ns) noexcept {
   if (time_ns < watchdog_due_ns_) return;
   if (watchdog_due_ns_ == kNever_ns) return;
+  if (has_program()) {
+    program().watch(micros(time_ns));
+    take_outputs(time_ns);
+    // A program that does not switch off at its time is asked again, not at once.
+    if (watchdog_due_ns_ <= time_ns) watchdog_due_ns_ = time_ns + settings_.report_period_ns;
+    return;
+  }
   ++counters_.watchdog_fired;
   amperes_.setZero();
   watchdog_due_ns_ = kNever_ns;

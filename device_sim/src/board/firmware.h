@@ -8,6 +8,7 @@
 #include <span>
 
 #include "board/board_bytes.h"
+#include "board/reference_program.h"
 #include "split_mix.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/arm_model.h"
@@ -75,6 +76,15 @@ class Firmware {
   /// next message, and its counters begin at zero.
   void restart(const Eigen::Vector3d& q, const Eigen::Vector3d& gimbal = {0, 0, 0}) noexcept;
 
+  /// Returns whether the board runs the reference firmware. Its `sample` then gives only the values
+  /// that the firmware measures, and `tick` must be called with them.
+  bool has_program() const noexcept { return settings_.reference; }
+  /// Lets the reference firmware begin a loop with the values of `sample` in `bytes`; replaces them
+  /// by its report.
+  void tick(std::int64_t time_ns, BoardBytes& bytes) noexcept;
+  /// Sets supply, temperature and encoder error that the reference firmware measures.
+  void set_health(const BoardHealth& health) noexcept { health_ = health; }
+
   /// Switches the motors off if no message came within the watchdog's time.
   void watch(std::int64_t time_ns) noexcept;
 
@@ -102,6 +112,10 @@ class Firmware {
   void report(const Eigen::Vector3d& counts, const Eigen::Vector3d& gimbal, std::uint16_t number,
               BoardBytes& bytes) const noexcept;
   bool countable() const noexcept;
+  ReferenceProgram& program() noexcept {
+    return settings_.program != nullptr ? *settings_.program : *own_program_;
+  }
+  void take_outputs(std::int64_t time_ns) noexcept;
 
   FirmwareSettings settings_;
   std::optional<driver::Gimbal> gimbal_;
@@ -117,6 +131,8 @@ class Firmware {
   Eigen::Vector3d amperes_{0, 0, 0};
   std::int64_t watchdog_due_ns_ = kNever_ns;
   bool button_ = false;
+  std::optional<HostProgram> own_program_;
+  BoardHealth health_;
 };
 
 }  // namespace thimble::device_sim

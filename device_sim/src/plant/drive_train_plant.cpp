@@ -134,5 +134,7 @@ template class DriveTrainPlant<driver::SerialArm, PointTip>;
 template class DriveTrainPlant<driver::SerialArm, LinkedTip>;
 template class DriveTrainPlant<driver::LinkageArm, PointTip>;
 template class DriveTrainPlant<driver::LinkageArm, LinkedTip>;
+template class DriveTrainPlant<BoardGeometry, PointTip>;
+template class DriveTrainPlant<BoardGeometry, LinkedTip>;
 
 }  // namespace thimble::device_sim

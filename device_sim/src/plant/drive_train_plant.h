@@ -38,7 +38,8 @@ struct DriveTrainState {
 /// then at their present velocities. Then every axis moves exactly (AxisDynamics), a tip with links
 /// by LinkedTip's rule. For a spring between masses that is the Stoermer-Verlet rule. It neither
 /// gains nor loses energy, and a resonance of w (rad/s) is too high by (w 25 us)^2 / 24, 1e-5 at
-/// 100 Hz. Defined for SerialArm and LinkageArm, with links for SerialArm. All functions but `make`
+/// 100 Hz. Defined for SerialArm, LinkageArm and
+/// BoardGeometry, with links for SerialArm. All functions but `make`
 /// are Real-time: safe.
 template <class Geometry, class Tip = PointTip>
 class THIMBLE_EXPORT DriveTrainPlant final : public Plant {
@@ -105,5 +106,7 @@ using SerialDriveTrainPlant = DriveTrainPlant<driver::SerialArm>;
 using LinkedSerialPlant = DriveTrainPlant<driver::SerialArm, LinkedTip>;
 using LinkageDriveTrainPlant = DriveTrainPlant<driver::LinkageArm>;
 using RubbingLinkagePlant = DriveTrainPlant<driver::LinkageArm, LinkedTip>;
+using BoardDriveTrainPlant = DriveTrainPlant<BoardGeometry>;
+using RubbingBoardPlant = DriveTrainPlant<BoardGeometry, LinkedTip>;
 
 }  // namespace thimble::device_sim

@@ -64,7 +64,8 @@ Eigen::Vector3d InversePlant<Geometry>::f_T_B() const noexcept {
   const Eigen::Vector3d tau = torque_per_ampere_.cwiseProduct(amperes_);
   Eigen::Vector3d force(0, 0, 0);
   if (tau.isZero(0)) return force;
-  for (int axis = 0; axis < 3; ++axis) {
+  const int axes = driver::motor_count(model_.geometry);
+  for (int axis = 0; axis < axes; ++axis) {
     const Eigen::Vector3d step = kDifference * Eigen::Vector3d::Unit(axis);
     const auto ahead = model_.geometry.inverse(p_BT() + step);
     const auto behind = model_.geometry.inverse(p_BT() - step);
@@ -96,5 +97,6 @@ void InversePlant<Geometry>::step(const Eigen::Vector3d& p_BH, std::int64_t dt_n
 
 template class InversePlant<driver::DeltaArm>;
 template class InversePlant<driver::LinkageArm>;
+template class InversePlant<BoardGeometry>;
 
 }  // namespace thimble::device_sim

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "plant/axis_dynamics.h"
+#include "plant/board_geometry.h"
 #include "plant/plant.h"
 #include "thimble/device_sim/settings.h"
 #include "thimble/driver/delta_arm.h"
@@ -18,8 +19,10 @@ namespace thimble::device_sim {
 /// The mechanics of an arm whose inverse kinematics are known (`inverse(p_BT)`), with a hand on it:
 /// like ArmPlant, for any geometry. Its force uses only the inverse kinematics: by virtual work f =
 /// (dq/dp)^T tau, and dq/dp is a central difference over 1 um (relative error about 1e-9). So it is
-/// independent of the Jacobian with which a driver turns forces into torques. Defined for DeltaArm
-/// and LinkageArm. All functions but the constructor are Real-time: safe.
+/// independent of the Jacobian with which a driver turns forces into torques. Defined for DeltaArm,
+/// LinkageArm and BoardGeometry. The tip of an arm with one or two motors stays on its line or
+/// plane if no force and no hand leaves it, which SimulatedArm ensures. All functions but the
+/// constructor are Real-time: safe.
 template <class Geometry>
 class THIMBLE_EXPORT InversePlant final : public Plant {
  public:
@@ -64,5 +67,6 @@ class THIMBLE_EXPORT InversePlant final : public Plant {
 
 using DeltaPlant = InversePlant<driver::DeltaArm>;
 using LinkagePlant = InversePlant<driver::LinkageArm>;
+using BoardPlant = InversePlant<BoardGeometry>;
 
 }  // namespace thimble::device_sim

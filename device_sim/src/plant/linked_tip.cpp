@@ -21,6 +21,12 @@ driver::Result<LinkedTip> LinkedTip::make(const driver::LinkageArm&,
   return make_of({}, settings, p_BT);
 }
 
+driver::Result<LinkedTip> LinkedTip::make(const BoardGeometry&,
+                                          const SimulatedArmSettings& settings,
+                                          const Eigen::Vector3d& p_BT) {
+  return make_of({}, settings, p_BT);
+}
+
 driver::Result<LinkedTip> LinkedTip::make_of(std::optional<LinkMechanics> links,
                                              const SimulatedArmSettings& settings,
                                              const Eigen::Vector3d& p_BT) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "plant/axis_dynamics.h"
+#include "plant/board_geometry.h"
 #include "plant/link_mechanics.h"
 #include "plant/tip_kinematics.h"
 #include "thimble/device_sim/settings.h"
@@ -37,6 +38,9 @@ class THIMBLE_EXPORT LinkedTip {
                                         const SimulatedArmSettings& settings,
                                         const Eigen::Vector3d& p_BT);
   static driver::Result<LinkedTip> make(const driver::LinkageArm& arm,
+                                        const SimulatedArmSettings& settings,
+                                        const Eigen::Vector3d& p_BT);
+  static driver::Result<LinkedTip> make(const BoardGeometry& arm,
                                         const SimulatedArmSettings& settings,
                                         const Eigen::Vector3d& p_BT);
 

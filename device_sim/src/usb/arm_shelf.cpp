@@ -16,6 +16,7 @@
 #include "usb/hid_arm.h"
 #include "usb/hid_board.h"
 #include "usb/usb_description.h"
+#include "wires/wire_table.h"
 
 namespace thimble::device_sim::usb {
 namespace {
@@ -45,6 +46,27 @@ Eigen::Vector3d offset(HandMotion motion, double reach, double time) {
       return {0, reach * math::sin(kTwoPi * time / 2), kReach * (math::cos(kTwoPi * time / 2) - 1)};
   }
   return {0, 0, 0};
+}
+
+/// Returns the same for an arm with one or two motors, along the axes of its tip. Away from the
+/// motors, because its home pose may be folded.
+Eigen::Vector3d short_offset(HandMotion motion, int motors, double time) {
+  if (time <= 0) return {0, 0, 0};
+  const double out = kReach * (1 - math::cos(kTwoPi * time)) / 2;
+  if (motors == 1) return {out, 0, 0};
+  const double aside = motion == HandMotion::kStroke ? kReach * math::sin(kTwoPi * time / 2) : 0.0;
+  return {aside, out, 0};
+}
+
+// Its points are finite, and their times increase.
+HandPath short_hand_path(const Eigen::Vector3d& p_BT, HandMotion motion, int motors) {
+  std::vector<HandPath::Point> points{{0, p_BT}};
+  const bool moves = motion == HandMotion::kTap || motion == HandMotion::kStroke;
+  for (int i = 0; moves && i * kMotionStep <= kMotionTime; ++i) {
+    const double time = i * kMotionStep;
+    points.push_back({kQuiet + time, p_BT + short_offset(motion, motors, time)});
+  }
+  return HandPath::make(points).value();
 }
 
 // Its points are finite, and their times increase.
@@ -128,6 +150,34 @@ driver::Result<std::unique_ptr<UsbArm>> hid_arm(OnBoard what,
                  options.motion);
 }
 
+/// Returns whether an arm is one of those with one to three motors that any board with 14-byte
+/// reports can drive: its unused motors and encoders are not connected.
+bool is_short(const driver::ArmModel& model) {
+  return std::holds_alternative<driver::PaddleArm>(model.geometry) ||
+         std::holds_alternative<driver::FiveBarArm>(model.geometry) ||
+         std::holds_alternative<driver::CartesianArm>(model.geometry);
+}
+
+/// Makes such an arm; it begins in its home pose.
+driver::Result<std::unique_ptr<UsbArm>> short_arm(const HidBoard& board, UsbDescription description,
+                                                  const ShelfOptions& options) {
+  const driver::ArmModel& model = options.arm->model;
+  Eigen::Vector3d p_BT;
+  Eigen::Matrix3d J_BT;
+  std::visit([&](const auto& build) { build.forward(model.joint_angles({}), p_BT, J_BT); },
+             model.geometry);
+  if (!driver::inverse(model.geometry, p_BT)) {
+    return driver::Error{
+        "The home pose of the arm file is no pose of the arm. Correct home_counts."};
+  }
+  return plugged(
+      HidArm::make(board, std::move(description), model,
+                   with_arm(settings_of_board(options.arm->settings.plant.mass, 3), *options.arm),
+                   short_hand_path(p_BT, options.motion, driver::motor_count(model.geometry)),
+                   options.seed),
+      options.motion);
+}
+
 driver::Result<std::unique_ptr<UsbArm>> falcon_arm(const ShelfOptions& options) {
   if (options.arm && !std::holds_alternative<driver::DeltaArm>(options.arm->model.geometry)) {
     return wrong_geometry("falcon");
@@ -145,6 +195,38 @@ driver::Result<std::unique_ptr<UsbArm>> falcon_arm(const ShelfOptions& options) 
   return plugged(std::move(falcon), options.motion);
 }
 
+/// Makes the arm of an arm file with a described wire on HID.
+driver::Result<std::unique_ptr<UsbArm>> described_arm(const ShelfOptions& options) {
+  const auto wire = options.arm ? options.arm->settings.firmware.described : nullptr;
+  if (!wire || wire->text.transport != driver::WireTransport::kHid || wire->report.padded > 64 ||
+      wire->command.padded > 64) {
+    return driver::Error{
+        "The board 'described' needs an arm file with a described wire on HID, with reports of at "
+        "most 64 bytes. Name it with --arm; serial boards are simulated by `thimble wire serve`."};
+  }
+  const HidBoard& board = wire->text.streams ? kDescribedStreamBoard : kDescribedAskBoard;
+  SimulatedArmSettings settings = with_arm(settings_of_board(0.15, 1), *options.arm);
+  settings.firmware.described = wire;
+  const auto make =
+      [&]<class Geometry>(
+          const driver::JointModel<Geometry>& model) -> driver::Result<std::unique_ptr<UsbArm>> {
+    Eigen::Vector3d p_BT;
+    Eigen::Matrix3d J_BT;
+    model.geometry.forward(model.joint_angles({}), p_BT, J_BT);
+    return plugged(HidArm::make(board, described_hid_description(*wire, options.serial), model,
+                                settings, hand_path(p_BT, options.motion), options.seed),
+                   options.motion);
+  };
+  const driver::ArmModel& model = options.arm->model;
+  if (std::holds_alternative<driver::SerialArm>(model.geometry)) {
+    return make(driver::model_as<driver::SerialArm>(model));
+  }
+  if (std::holds_alternative<driver::LinkageArm>(model.geometry)) {
+    return make(driver::model_as<driver::LinkageArm>(model));
+  }
+  return wrong_geometry("described");
+}
+
 }  // namespace
 
 driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
@@ -159,6 +241,9 @@ driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
                    model, options);
   }
   const auto polhem = [&](const HidBoard& board, UsbDescription description) {
+    if (options.arm && is_short(options.arm->model)) {
+      return short_arm(board, std::move(description), options);
+    }
     // The home pose is the parking pose; the hand works in the middle of the workspace.
     return hid_arm({.board = board,
                     .description = std::move(description),
@@ -173,6 +258,7 @@ driver::Result<std::unique_ptr<UsbArm>> make_usb_arm(std::string_view name,
     return polhem(kTeensy64Board, teensy_raw_hid_description(options.serial));
   }
   if (name == "falcon") return falcon_arm(options);
+  if (name == kDescribedName) return described_arm(options);
   std::string names;
   for (const ShelfEntry& entry : kShelf) {
     names += (names.empty() ? "" : ", ") + std::string(entry.name);

@@ -84,6 +84,25 @@ UsbDescription teensy_raw_hid_description(std::string serial) {
   return d;
 }
 
+UsbDescription described_hid_description(const driver::WireTable& wire, std::string serial) {
+  const driver::WireIdentity& identity = wire.text.identity;
+  UsbDescription d;
+  d.vendor_id = identity.vendor_id;
+  d.product_id = identity.product_id;
+  d.release = 0x0100;
+  d.manufacturer = "Thimble";
+  d.product = identity.product.empty() ? "Simulated board" : identity.product;
+  d.serial = or_else(std::move(serial), "SIM0001");
+  InterfaceDescription interface = raw_hid(64, 0x81, 0x01);
+  const bool own = identity.usage_page != 0;
+  interface.report_descriptor = build_raw_report_descriptor(
+      own ? identity.usage_page : kRawHidPage, own ? identity.usage : kRawHidUsage,
+      static_cast<std::uint8_t>(wire.report.padded),
+      static_cast<std::uint8_t>(wire.command.padded));
+  d.interfaces = {std::move(interface)};
+  return d;
+}
+
 UsbDescription falcon_description(std::string serial) {
   UsbDescription d;
   d.vendor_id = 0x0403;

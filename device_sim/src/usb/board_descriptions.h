@@ -4,6 +4,7 @@
 #include <string>
 
 #include "usb/usb_description.h"
+#include "wires/wire_table.h"
 
 namespace thimble::device_sim::usb {
 
@@ -23,6 +24,10 @@ UsbDescription mbed_hid_description(std::uint8_t report_size, std::string serial
 /// PaulStoffregen/cores teensy3/usb_desc.h, usb_desc.c]. Its serial number is a decimal number of
 /// each chip; an empty one means ours, 1234560.
 UsbDescription teensy_raw_hid_description(std::string serial);
+
+/// Returns the description of a HID board whose messages an arm file describes: its ids, product
+/// string and usage. An empty serial number means ours, SIM0001.
+UsbDescription described_hid_description(const driver::WireTable& wire, std::string serial);
 
 /// Returns the description of a Novint Falcon. The strings are quoted from memory. An empty serial
 /// number means ours, SIM0001.

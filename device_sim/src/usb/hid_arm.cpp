@@ -1,6 +1,7 @@
 #include "usb/hid_arm.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "arms/hfab/hfab_report.h"
@@ -23,8 +24,11 @@ enum HidRequest : std::uint8_t {
 
 /// Sets the protocol of the board, and encoders that the board can have.
 SimulatedArmSettings on_board(SimulatedArmSettings settings, const HidBoard& board) {
-  settings.firmware.protocol = board.layout == HidLayout::kWoodenHaptics ? driver::ArmKind::kWoody
-                                                                         : driver::ArmKind::kPolhem;
+  settings.firmware.protocol = board.layout == HidLayout::kDescribed ? driver::ArmKind::kDescribed
+                               : board.layout == HidLayout::kWoodenHaptics
+                                   ? driver::ArmKind::kWoody
+                                   : driver::ArmKind::kPolhem;
+  if (board.layout != HidLayout::kDescribed) settings.firmware.described = nullptr;
   settings.firmware.ideal_encoders = false;
   return settings;
 }
@@ -35,25 +39,31 @@ driver::Result<std::unique_ptr<HidArm>> HidArm::make(
     const HidBoard& board, UsbDescription description,
     const driver::JointModel<driver::SerialArm>& model, const SimulatedArmSettings& settings,
     HandPath path, std::uint64_t seed) {
-  auto arm = SimulatedArm::make(model, on_board(settings, board), std::move(path), seed);
-  if (!arm) return arm.error();
-  return std::unique_ptr<HidArm>(new HidArm(board, std::move(description), arm_model(model),
-                                            settings, std::move(arm).value()));
+  return make(board, std::move(description), arm_model(model), settings, std::move(path), seed);
 }
 
 driver::Result<std::unique_ptr<HidArm>> HidArm::make(
     const HidBoard& board, UsbDescription description,
     const driver::JointModel<driver::LinkageArm>& model, const SimulatedArmSettings& settings,
     HandPath path, std::uint64_t seed) {
+  return make(board, std::move(description), arm_model(model), settings, std::move(path), seed);
+}
+
+driver::Result<std::unique_ptr<HidArm>> HidArm::make(const HidBoard& board,
+                                                     UsbDescription description,
+                                                     const driver::ArmModel& model,
+                                                     const SimulatedArmSettings& settings,
+                                                     HandPath path, std::uint64_t seed) {
   auto arm = SimulatedArm::make(model, on_board(settings, board), std::move(path), seed);
   if (!arm) return arm.error();
-  return std::unique_ptr<HidArm>(new HidArm(board, std::move(description), arm_model(model),
-                                            settings, std::move(arm).value()));
+  return std::unique_ptr<HidArm>(
+      new HidArm(board, std::move(description), model, settings, std::move(arm).value()));
 }
 
 HidArm::HidArm(const HidBoard& board, UsbDescription description, const driver::ArmModel& model,
                const SimulatedArmSettings& settings, SimulatedArm arm) noexcept
     : board_(board),
+      wire_(board.layout == HidLayout::kDescribed ? settings.firmware.described : nullptr),
       description_(std::move(description)),
       model_(model),
       report_age_ns_(settings.wire.delay_in_ns),
@@ -138,20 +148,38 @@ PacketResult HidArm::in(std::uint8_t address, std::span<std::byte> packet) noexc
   if (!any) return {Answer::kNak, 0};
   ++counter_;
   ++truth_.reports;
-  for (std::size_t i = 0; i < 3; ++i) truth_.counts[i] = get_word(report, i);
+  note_counts(report);
   return {Answer::kDone, lay_out(report, packet)};
 }
 
 // A message of another length has no effect and does not keep the motors on.
 void HidArm::use_message(std::span<const std::byte> bytes) noexcept {
-  if (bytes.size() != report_size()) {
+  if (bytes.size() != message_size()) {
     ++malformed_;
     return;
   }
   arm_.put_message(bytes);
   ++truth_.messages;
   truth_.message_ns = arm_.time_ns();
+  if (wire_) {
+    driver::WireValues values;
+    if (!wire_->command.read(bytes, values)) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+      truth_.motor_values[i] = static_cast<int>(std::lround(1e3 * values.motors[i]));
+    }
+    return;
+  }
   for (std::size_t i = 0; i < 3; ++i) truth_.motor_values[i] = get_word(bytes, i);
+}
+
+void HidArm::note_counts(std::span<const std::byte> report) noexcept {
+  if (wire_) {
+    driver::WireValues values;
+    if (!wire_->report.read(report, values)) return;
+    for (std::size_t i = 0; i < 3; ++i) truth_.counts[i] = values.encoders[i];
+    return;
+  }
+  for (std::size_t i = 0; i < 3; ++i) truth_.counts[i] = get_word(report, i);
 }
 
 PacketResult HidArm::out(std::uint8_t address, std::span<const std::byte> packet) noexcept {

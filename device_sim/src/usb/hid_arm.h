@@ -12,6 +12,7 @@
 #include "usb/hid_board.h"
 #include "usb/setup_packet.h"
 #include "usb/usb_description.h"
+#include "wires/wire_table.h"
 
 namespace thimble::device_sim::usb {
 
@@ -29,6 +30,12 @@ class HidArm final : public UsbArm {
       const HidBoard& board, UsbDescription description,
       const driver::JointModel<driver::LinkageArm>& model, const SimulatedArmSettings& settings,
       HandPath path, std::uint64_t seed = 0);
+  /// As above, for an arm of any geometry that SimulatedArm makes.
+  static driver::Result<std::unique_ptr<HidArm>> make(const HidBoard& board,
+                                                      UsbDescription description,
+                                                      const driver::ArmModel& model,
+                                                      const SimulatedArmSettings& settings,
+                                                      HandPath path, std::uint64_t seed = 0);
 
   const UsbDescription& description() const noexcept override { return description_; }
   void advance_to(std::int64_t time_ns) noexcept override;
@@ -50,7 +57,9 @@ class HidArm final : public UsbArm {
   /// Returns the kind of board. Real-time: safe.
   const HidBoard& board() const noexcept { return board_; }
   /// Returns the size of a report, bytes. Real-time: safe.
-  std::size_t report_size() const noexcept { return board_.report_size(); }
+  std::size_t report_size() const noexcept {
+    return wire_ ? wire_->report.padded : board_.report_size();
+  }
 
  private:
   /// True encoder positions when a report was sampled.
@@ -68,9 +77,15 @@ class HidArm final : public UsbArm {
   bool offered(BoardBytes& report) noexcept;
   void offer() noexcept;
   void use_message(std::span<const std::byte> bytes) noexcept;
+  void note_counts(std::span<const std::byte> report) noexcept;
   std::size_t lay_out(std::span<const std::byte> report, std::span<std::byte> packet) noexcept;
 
+  std::size_t message_size() const noexcept {
+    return wire_ ? wire_->command.padded : board_.report_size();
+  }
+
   HidBoard board_;
+  std::shared_ptr<const driver::WireTable> wire_;  // null unless it is described
   UsbDescription description_;
   driver::ArmModel model_;
   std::int64_t report_age_ns_;

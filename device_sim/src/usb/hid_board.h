@@ -13,6 +13,7 @@ enum class HidLayout : std::uint8_t {
   kWoodenHaptics,  ///< 8 bytes: 3 counts and a counter in; 3 currents (mA) and an unused word out.
   kPolhem,         ///< 14 bytes, as in arms/hfab/hfab_report.h of the driver.
   kPolhemPadded,   ///< The same padded to 64 bytes, as boards built on the Teensy send them.
+  kDescribed,      ///< Described by FirmwareSettings::described.
 };
 
 /// When a board sends reports.
@@ -32,7 +33,8 @@ struct HidBoard {
   std::uint8_t in = 0x81;       ///< Endpoint of the reports.
   std::uint8_t out = 0x01;      ///< Endpoint of the messages.
 
-  /// Returns the size of a report and of a message, bytes. Real-time: safe.
+  /// Returns the size of a report and of a message, bytes; 0 if they are described. Real-time:
+  /// safe.
   constexpr std::size_t report_size() const noexcept {
     switch (layout) {
       case HidLayout::kWoodenHaptics:
@@ -41,6 +43,8 @@ struct HidBoard {
         return driver::hfab::kReportSize;
       case HidLayout::kPolhemPadded:
         return driver::hfab::kPaddedReportSize;
+      case HidLayout::kDescribed:
+        return 0;
     }
     return 0;
   }
@@ -66,5 +70,12 @@ inline constexpr HidBoard kMbed14Board{};
 /// free-running one.
 inline constexpr HidBoard kTeensy64Board{
     .layout = HidLayout::kPolhemPadded, .takes_set_idle = true, .in = 0x83, .out = 0x04};
+
+/// Boards whose messages an arm file describes, without and with requests (exchange: stream, ask).
+inline constexpr HidBoard kDescribedStreamBoard{.layout = HidLayout::kDescribed,
+                                                .report_mode = HidReportMode::kFreeRunning,
+                                                .takes_set_idle = true};
+inline constexpr HidBoard kDescribedAskBoard{.layout = HidLayout::kDescribed,
+                                             .takes_set_idle = true};
 
 }  // namespace thimble::device_sim::usb

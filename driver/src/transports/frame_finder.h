@@ -20,6 +20,10 @@ class THIMBLE_EXPORT FrameFinder {
   /// Takes the next bytes of the stream.
   void push(std::span<const std::byte> bytes) noexcept;
 
+  /// Drops the beginning of a message without marks, before the next request is sent. Other
+  /// messages find their beginning again by their marks.
+  void forget_partial() noexcept;
+
   /// Returns whether a message has arrived that was not taken yet.
   bool ready() const noexcept { return ready_ > 0; }
 
@@ -34,12 +38,21 @@ class THIMBLE_EXPORT FrameFinder {
   std::uint64_t torn() const noexcept { return torn_; }
 
  private:
+  void push_described(std::span<const std::byte> bytes) noexcept;
+  void take_text(std::byte byte) noexcept;
+  void take_block(std::byte byte) noexcept;
+  void take_measured(std::byte byte) noexcept;
+  void keep(std::size_t size) noexcept;
+  void drop(std::size_t size) noexcept;
+  void emit() noexcept;
+
   Framing framing_;
   std::array<std::byte, kReportCapacity> growing_{}, newest_{};
   std::size_t growing_size_ = 0;  // 0: outside of a message
   std::size_t newest_size_ = 0;
   std::uint32_t ready_ = 0;
   std::uint64_t found_ = 0, torn_ = 0;
+  bool joined_ = false;  // of a described text, COBS or SLIP: the beginning of a message is known
 };
 
 }  // namespace thimble::driver

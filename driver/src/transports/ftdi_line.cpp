@@ -114,7 +114,7 @@ Error cannot_open(const UsbAddress& address, int code) {
 
 }  // namespace
 
-Result<std::unique_ptr<FtdiLine>> FtdiLine::open(const UsbAddress& address) {
+Result<FtdiUsb> open_bulk_device(const UsbAddress& address, const BulkEnds& ends) {
   libusb_context* raw_context = nullptr;
   if (const int code = libusb_init(&raw_context); code != 0) return cannot_open(address, code);
   FtdiUsb usb;
@@ -139,9 +139,15 @@ Result<std::unique_ptr<FtdiLine>> FtdiLine::open(const UsbAddress& address) {
   if (code != 0) return cannot_open(address, code);
   // An endpoint that stalled under the previous program stays halted until it is cleared. A
   // converter that refuses this fails at the first request.
-  libusb_clear_halt(usb.handle.get(), kFtdiEndpointIn);
-  libusb_clear_halt(usb.handle.get(), kFtdiEndpointOut);
-  return std::unique_ptr<FtdiLine>(std::make_unique<UsbFtdiLine>(std::move(usb)));
+  libusb_clear_halt(usb.handle.get(), ends.in);
+  libusb_clear_halt(usb.handle.get(), ends.out);
+  return usb;
+}
+
+Result<std::unique_ptr<FtdiLine>> FtdiLine::open(const UsbAddress& address) {
+  auto usb = open_bulk_device(address, {});
+  if (!usb) return usb.error();
+  return std::unique_ptr<FtdiLine>(std::make_unique<UsbFtdiLine>(std::move(usb).value()));
 }
 
 }  // namespace thimble::driver

@@ -16,8 +16,8 @@ namespace {
 /// next.
 class FtdiTransport final : public StreamTransport {
  public:
-  FtdiTransport(FtdiUsb usb, const Framing& framing, const Clock& clock)
-      : StreamTransport(clock, framing), usb_(std::move(usb)) {}
+  FtdiTransport(FtdiUsb usb, const Framing& framing, const Clock& clock, const BulkEnds& ends)
+      : StreamTransport(clock, framing), usb_(std::move(usb)), ends_(ends) {}
 
   ~FtdiTransport() override {
     // The last message is the zero force: wait up to 20 frames for it to leave.
@@ -35,17 +35,16 @@ class FtdiTransport final : public StreamTransport {
       slot.owner = this;
       slot.transfer = libusb_alloc_transfer(0);
       if (slot.transfer == nullptr) return false;
-      libusb_fill_bulk_transfer(slot.transfer, usb_.handle.get(), kFtdiEndpointIn,
-                                slot.bytes.data(), static_cast<int>(slot.bytes.size()), &came,
-                                &slot, 0);
+      libusb_fill_bulk_transfer(slot.transfer, usb_.handle.get(), ends_.in, slot.bytes.data(),
+                                static_cast<int>(slot.bytes.size()), &came, &slot, 0);
       if (!submit(slot)) return false;
     }
     for (Slot& slot : out_) {
       slot.owner = this;
       slot.transfer = libusb_alloc_transfer(0);
       if (slot.transfer == nullptr) return false;
-      libusb_fill_bulk_transfer(slot.transfer, usb_.handle.get(), kFtdiEndpointOut,
-                                slot.bytes.data(), 0, &went, &slot, 0);
+      libusb_fill_bulk_transfer(slot.transfer, usb_.handle.get(), ends_.out, slot.bytes.data(), 0,
+                                &went, &slot, 0);
     }
     return true;
   }
@@ -112,10 +111,8 @@ class FtdiTransport final : public StreamTransport {
       case LIBUSB_TRANSFER_COMPLETED:
       case LIBUSB_TRANSFER_TIMED_OUT:
         self.errors_ = 0;
-        for_each_ftdi_packet(
-            std::span<const std::byte>(reinterpret_cast<const std::byte*>(transfer->buffer),
-                                       static_cast<std::size_t>(transfer->actual_length)),
-            [&self](std::span<const std::byte> content) { self.finder().push(content); });
+        self.take(std::span<const std::byte>(reinterpret_cast<const std::byte*>(transfer->buffer),
+                                             static_cast<std::size_t>(transfer->actual_length)));
         break;
       case LIBUSB_TRANSFER_NO_DEVICE:
       case LIBUSB_TRANSFER_CANCELLED:
@@ -125,6 +122,12 @@ class FtdiTransport final : public StreamTransport {
         if (++self.errors_ > kErrorsMax) self.lost_ = true;
     }
     if (!self.lost_ && !self.submit(slot)) self.lost_ = true;
+  }
+
+  void take(std::span<const std::byte> bytes) noexcept {
+    if (!ends_.ftdi) return finder().push(bytes);
+    for_each_ftdi_packet(bytes,
+                         [this](std::span<const std::byte> content) { finder().push(content); });
   }
 
   static void LIBUSB_CALL went(libusb_transfer* transfer) noexcept {
@@ -176,6 +179,7 @@ class FtdiTransport final : public StreamTransport {
   }
 
   FtdiUsb usb_;
+  BulkEnds ends_;
   std::array<Slot, 2> in_, out_;
   const Slot* newest_ = nullptr;  // slot of the last submitted message
   int errors_ = 0;
@@ -187,10 +191,13 @@ class FtdiTransport final : public StreamTransport {
 }  // namespace
 
 Result<std::unique_ptr<Transport>> start_ftdi_transport(FtdiUsb usb, const Framing& framing,
-                                                        const Clock& clock) {
-  auto transport = std::make_unique<FtdiTransport>(std::move(usb), framing, clock);
+                                                        const Clock& clock, const BulkEnds& ends) {
+  auto transport = std::make_unique<FtdiTransport>(std::move(usb), framing, clock, ends);
   if (!transport->start()) {
-    return Error{"Cannot read the arm's USB converter. Unplug the arm and plug it in again."};
+    return Error{ends.ftdi
+                     ? "Cannot read the arm's USB converter. Unplug the arm and plug it in again."
+                     : "Cannot read the board on USB. Check endpoint_in in its arm file, and plug "
+                       "it in again."};
   }
   return std::unique_ptr<Transport>(std::move(transport));
 }

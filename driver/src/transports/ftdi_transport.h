@@ -7,6 +7,7 @@
 #include "thimble/driver/clock.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/transport.h"
+#include "thimble/driver/transports.h"
 
 namespace thimble::driver {
 
@@ -33,8 +34,20 @@ struct FtdiUsb {
   std::unique_ptr<libusb_device_handle, CloseHandle> handle;
 };
 
-/// Starts continuous reading of the converter. Real-time: never from the servo thread.
+/// Endpoints of a board on USB bulk transfers.
+struct BulkEnds {
+  unsigned char in = kFtdiEndpointIn;    ///< Endpoint of bytes from the board.
+  unsigned char out = kFtdiEndpointOut;  ///< Endpoint of bytes to the board.
+  bool ftdi = true;  ///< Each packet begins with the two status bytes of an FTDI converter.
+};
+
+/// Opens a USB device, detaches the kernel's driver from its first interface if necessary, and
+/// claims it. Only one program can. Real-time: never from the servo thread.
+Result<FtdiUsb> open_bulk_device(const UsbAddress& address, const BulkEnds& ends);
+
+/// Starts continuous reading of the converter or board. Real-time: never from the servo thread.
 Result<std::unique_ptr<Transport>> start_ftdi_transport(FtdiUsb usb, const Framing& framing,
-                                                        const Clock& clock);
+                                                        const Clock& clock,
+                                                        const BulkEnds& ends = {});
 
 }  // namespace thimble::driver

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <ctime>
+#include <optional>
 #include <utility>
 
 #include "thimble/driver/arm.h"
@@ -111,11 +112,30 @@ class SerialTransport final : public StreamTransport {
   bool gone_ = false;  // a write failed permanently
 };
 
+/// Returns the setting of a bit rate; empty if the kernel has none.
+std::optional<speed_t> speed_of(int baud) {
+  constexpr std::pair<int, speed_t> kSpeeds[] = {
+      {1200, B1200},       {2400, B2400},       {4800, B4800},       {9600, B9600},
+      {19200, B19200},     {38400, B38400},     {57600, B57600},     {115200, B115200},
+      {230400, B230400},   {460800, B460800},   {500000, B500000},   {921600, B921600},
+      {1000000, B1000000}, {1500000, B1500000}, {2000000, B2000000}, {3000000, B3000000},
+      {4000000, B4000000}};
+  for (const auto& [rate, speed] : kSpeeds) {
+    if (rate == baud) return speed;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Transport>> open_serial_transport(const std::string& node,
-                                                         const Framing& framing,
-                                                         const Clock& clock) {
+                                                         const Framing& framing, const Clock& clock,
+                                                         int baud) {
+  const auto speed = speed_of(baud);
+  if (!speed) {
+    return Error{node + ": serial ports have no bit rate of " + std::to_string(baud) +
+                 ". Use a usual one, for example 115200 or 1000000."};
+  }
   // The lock excludes programs that check it, TIOCEXCL those that do not (unless root runs them).
   auto lock = NodeLock::take(node);
   if (!lock) return lock.error();
@@ -125,7 +145,7 @@ Result<std::unique_ptr<Transport>> open_serial_transport(const std::string& node
     return Error{node + " is not a serial port. Check the node with `thimble devices`."};
   cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
-  cfsetspeed(&settings, B115200);  // USB serial boards ignore it [S woodenhaptics firmware]
+  cfsetspeed(&settings, *speed);  // USB serial boards ignore it [S woodenhaptics firmware]
   if (tcsetattr(file, TCSANOW, &settings) != 0 || ioctl(file, TIOCEXCL) != 0) {
     return Error{node + " cannot be set up (" + std::strerror(errno) +
                  "). Check that the arm is plugged in."};

@@ -40,6 +40,7 @@ TransportStatus StreamTransport::write(std::span<const std::byte> report) noexce
   }
   if (lost_) return TransportStatus::kLost;
   if (awaiting()) ++unanswered_;
+  finder_.forget_partial();
   const TransportStatus status = put(report);
   if (status == TransportStatus::kLost) lost_ = true;
   if (status == TransportStatus::kOk) {

@@ -45,6 +45,7 @@ class BallContact {
   /// first one. Real-time: safe; a few ns far from the surface.
   const ContactState& update(const driver::DeviceState& state) noexcept {
     const Eigen::Vector3d& p_WT = state.p_WT;
+    steps_ = 0;
     if (!within_range(p_WT)) [[unlikely]] {
       state_ = {};
       has_before_ = false;
@@ -98,6 +99,8 @@ class BallContact {
 
   /// Returns the parts that hold the ball, none if it is free. Real-time: safe.
   std::span<const BallFeature> held() const noexcept { return {held_.data(), held_count_}; }
+  /// Returns the number of steps of the last `update`. Real-time: safe.
+  int steps() const noexcept { return steps_; }
   /// Returns the number of ticks that ended before the ball was at rest. Real-time: safe.
   std::uint64_t unsettled() const noexcept { return unsettled_; }
 
@@ -125,6 +128,7 @@ class BallContact {
     if (state_.touching) want = std::min(want, 2 * (p_WT - p_WT_).norm() + rounding);
     bool newton = true;
     for (int round = 0; round < kStepsMax; ++round) {
+      ++steps_;
       double reach = want;
       const auto features = source_.features(p_WQ_, reach);
       const Eigen::Vector3d to_tip = p_WT - p_WQ_;
@@ -251,6 +255,7 @@ class BallContact {
   Eigen::Vector3d p_WT_{0, 0, 0};  // tip at the last tick
   bool has_before_ = false;
   bool began_inside_ = false;  // the tip has been inside since the first tick
+  int steps_ = 0;
   std::uint64_t unsettled_ = 0;
 };
 

@@ -41,6 +41,9 @@ class BallSolid final : public WorldSolid {
   bool inside(const Eigen::Vector3d& p_W) const noexcept override {
     return contact().source().inside(p_W);
   }
+  bool in_solid(const Eigen::Vector3d& p_W) const noexcept override {
+    return contact().source().in_solid(p_W);
+  }
   SolidEntry first_entry(const Eigen::Vector3d& p_from,
                          const Eigen::Vector3d& p_to) noexcept override {
     return contact().source().first_entry(p_from, p_to);
@@ -59,6 +62,7 @@ class BallSolid final : public WorldSolid {
     return found;
   }
   bool follows_closely() const noexcept override { return true; }
+  int steps() const noexcept override { return contact().steps(); }
   const ContactState& follow_closely(const ContactState&,
                                      const Eigen::Vector3d& p_W) noexcept override {
     return follow(p_W);

@@ -20,7 +20,8 @@ inline constexpr std::size_t kFeaturesMax = 48;
 /// solid in a ball around q: of the radius `reach`, which it may enlarge or, if that is not
 /// possible, reduce. `feature(id, q)` is one of them, for another centre. `clear(from, to)` returns
 /// whether both are known to be in a ball without contact. `first_entry` finds where the ball on a
-/// path of its centre meets the solid first; none if it begins inside.
+/// path of its centre meets the solid first; none if it begins inside. `inside(q)` returns whether
+/// the ball is not outside of the solid, `in_solid(q)` whether its centre is inside.
 template <class Source>
 concept BallSource = requires(Source& source, const Source& still, const Eigen::Vector3d& q,
                               double& reach) {
@@ -33,6 +34,8 @@ concept BallSource = requires(Source& source, const Source& still, const Eigen::
   { source.first_entry(q, q) }
   noexcept->std::same_as<SolidEntry>;
   { still.inside(q) }
+  noexcept->std::same_as<bool>;
+  { still.in_solid(q) }
   noexcept->std::same_as<bool>;
   { still.box() }
   noexcept->std::same_as<SolidBox>;

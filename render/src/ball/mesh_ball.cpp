@@ -89,25 +89,38 @@ std::span<const BallFeature> MeshBall::features(const Vector3d& q, double& reach
   }
   reach = std::min(near_radius_ - away - radius_, kReachRound * reach);
   std::size_t count = 0;
-  for (std::size_t i = 0; i < near_count_; ++i) {
-    const double least = near_[i].distance - away - radius_;
-    if (least > reach) break;
-    const std::int32_t triangle = near_[i].triangle;
-    const auto hides = [&](const BallFeature& found) { return hidden(triangle, found); };
-    if (std::any_of(features_.begin(), features_.begin() + static_cast<std::ptrdiff_t>(count),
-                    hides)) {
-      continue;
+  bool dropped = false;
+  const auto drop_hidden = [&] {
+    const std::size_t kept = without_hidden(count);
+    dropped = dropped || kept < count;
+    count = kept;
+  };
+  // Adds the triangles that no feature hides yet.
+  const auto add = [&](bool drop) {
+    for (std::size_t i = 0; i < near_count_; ++i) {
+      const double least = near_[i].distance - away - radius_;
+      if (least > reach) break;
+      const std::int32_t triangle = near_[i].triangle;
+      const auto hides = [&](const BallFeature& found) { return hidden(triangle, found); };
+      if (std::any_of(features_.begin(), features_.begin() + static_cast<std::ptrdiff_t>(count),
+                      hides)) {
+        continue;
+      }
+      if (drop && count == features_.size()) drop_hidden();
+      if (count == features_.size()) {
+        // No room for the others: the step ends before it can meet them.
+        reach = std::max(0.0, least);
+        break;
+      }
+      features_[count] = feature(triangle, q);
+      if (features_[count].gap <= reach) ++count;
     }
-    if (count == features_.size()) count = without_hidden(count);
-    if (count == features_.size()) {
-      // No room for the others: the step ends before it can meet them.
-      reach = std::max(0.0, least);
-      break;
-    }
-    features_[count] = feature(triangle, q);
-    if (features_[count].gap <= reach) ++count;
-  }
-  return {features_.data(), without_hidden(count)};
+  };
+  add(true);
+  drop_hidden();
+  // A triangle behind the plane of a dropped feature may be in front of all others.
+  if (dropped) add(false);
+  return {features_.data(), count};
 }
 
 // Returns whether a triangle is wholly behind the plane of a feature.

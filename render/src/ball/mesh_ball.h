@@ -39,6 +39,7 @@ class THIMBLE_EXPORT MeshBall {
   }
   SolidEntry first_entry(const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept;
   bool inside(const Eigen::Vector3d& q) const noexcept;
+  bool in_solid(const Eigen::Vector3d& q) const noexcept { return search_->inside(q); }
   SolidBox box() const noexcept;
   double radius() const noexcept { return radius_; }
   double rounding() const noexcept { return rounding_; }

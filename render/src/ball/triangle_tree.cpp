@@ -96,7 +96,6 @@ double TriangleTree::near(const Vector3d& p, double radius, std::span<NearTriang
                           std::size_t& count) const noexcept {
   count = 0;
   double squared = radius * radius;
-  bool full = false;
   // A heap with the farthest triangle on top while it is full.
   const auto nearer = [](const NearTriangle& a, const NearTriangle& b) {
     return a.distance < b.distance || (a.distance == b.distance && a.triangle < b.triangle);
@@ -111,7 +110,6 @@ double TriangleTree::near(const Vector3d& p, double radius, std::span<NearTriang
           if (count < found.size()) return;
           std::make_heap(found.begin(), found.end(), nearer);
         } else {
-          full = true;
           if (!nearer(one, found.front())) return;
           std::pop_heap(found.begin(), found.end(), nearer);
           found.back() = one;
@@ -122,8 +120,10 @@ double TriangleTree::near(const Vector3d& p, double radius, std::span<NearTriang
   const auto list = found.first(count);
   std::sort(list.begin(), list.end(), nearer);
   for (NearTriangle& one : list) one.distance = std::sqrt(one.distance);
-  // Without those that other triangles at the same distance may have displaced.
-  return full ? list.back().distance * (1 - 0x1p-50) : radius;
+  if (count < found.size()) return radius;
+  // Since the list was full, farther triangles were not visited. Without those at the same distance
+  // that others may have displaced.
+  return list.back().distance * (1 - 0x1p-50);
 }
 
 double TriangleTree::distance(const Vector3d& p, double bound) const noexcept {

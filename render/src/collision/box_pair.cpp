@@ -1,13 +1,9 @@
 #include "collision/box_pair.h"
 
-#include <BulletCollision/CollisionDispatch/btActivatingCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btBoxBoxDetector.h>
-#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
-#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
-#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 
-#include <new>
+#include "collision/pair_contact.h"
 
 namespace thimble::render {
 namespace {
@@ -36,13 +32,9 @@ btBoxShape grown(const btCollisionShape* shape, btScalar by) {
   return btBoxShape(box->getHalfExtentsWithMargin() + btVector3(by, by, by));
 }
 
-class BoxPair final : public btActivatingCollisionAlgorithm {
+class BoxPair final : public PairContact {
  public:
-  BoxPair(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
-          const btCollisionObjectWrapper* b)
-      : btActivatingCollisionAlgorithm(info, a, b),
-        manifold_(m_dispatcher->getNewManifold(a->getCollisionObject(), b->getCollisionObject())) {}
-  ~BoxPair() override { m_dispatcher->releaseManifold(manifold_); }
+  using PairContact::PairContact;
 
   void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                         const btDispatcherInfo&, btManifoldResult* result) override {
@@ -58,14 +50,6 @@ class BoxPair final : public btActivatingCollisionAlgorithm {
     btBoxBoxDetector(&box_a, &box_b).getClosestPoints(input, moved, nullptr);
     result->refreshContactPoints();
   }
-  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
-                                 btManifoldResult*) override {
-    return 1;
-  }
-  void getAllContactManifolds(btManifoldArray& all) override { all.push_back(manifold_); }
-
- private:
-  btPersistentManifold* manifold_;
 };
 
 }  // namespace
@@ -73,8 +57,7 @@ class BoxPair final : public btActivatingCollisionAlgorithm {
 btCollisionAlgorithm* BoxPairs::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                          const btCollisionObjectWrapper* a,
                                                          const btCollisionObjectWrapper* b) {
-  void* const memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(BoxPair));
-  return new (memory) BoxPair(info, a, b);
+  return make_pair_contact<BoxPair>(info, a, b);
 }
 
 }  // namespace thimble::render

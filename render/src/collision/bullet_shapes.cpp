@@ -21,7 +21,6 @@ namespace {
 constexpr double kMargin = 0.05;
 // Hulls and triangles grow by theirs. [chosen: a thousandth, below what a hand feels]
 constexpr double kThin = 1e-3;
-constexpr double kHalfSpaceSide = 10;  // m
 
 }  // namespace
 
@@ -133,7 +132,6 @@ BulletShapes::BulletShapes(const ColliderSet& set, double scale, bool moves)
     const Along along = moves ? along_axes(collider) : Along{};
     std::unique_ptr<btCollisionShape> shape;
     double inner = size.x();
-    double above = 0;  // m, of the shape's centre over its frame's origin
     switch (collider.form) {
       case ColliderForm::kPoints: {
         const std::vector<btScalar> points = scaled(collider.points, scale);
@@ -186,12 +184,9 @@ BulletShapes::BulletShapes(const ColliderSet& set, double scale, bool moves)
         shape = capsule_of(size, along.z);
         break;
       case ColliderForm::kHalfSpace:
-        // As a box, because Bullet finds the corners of a body on a plane one by one, but those on
-        // a box all at once. An arm reaches less far. [chosen: 10 m]
         inner = std::numeric_limits<double>::infinity();
-        shape = box_of(Eigen::Vector3d::Constant(scale * kHalfSpaceSide));
+        shape = std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0);
         shape->setMargin(0);
-        above = -kHalfSpaceSide;
         break;
     }
     // A sphere and a capsule are nothing but margin.
@@ -200,9 +195,8 @@ BulletShapes::BulletShapes(const ColliderSet& set, double scale, bool moves)
                             collider.form == ColliderForm::kCone;
     if (has_margin) shape->setMargin(kMargin * inner);
     inner_ = std::min(inner_, inner);
-    const Eigen::Vector3d middle = collider.p + above * collider.R.col(2);
     places.push_back(along.found ? btTransform::getIdentity()
-                                 : transform_of(collider.R, scale * middle));
+                                 : transform_of(collider.R, scale * collider.p));
     parts.shapes.push_back(std::move(shape));
   }
   if (parts.shapes.empty()) return;

@@ -1,5 +1,4 @@
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
-#include <BulletCollision/CollisionDispatch/btInternalEdgeUtility.h>
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
 #include <btBulletDynamicsCommon.h>
@@ -7,149 +6,28 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "body/motion/free_turn.h"
+#include "body/motion/turn.h"
 #include "collision/box_pair.h"
+#include "collision/bullet_joints.h"
 #include "collision/bullet_shapes.h"
 #include "collision/bullet_units.h"
+#include "collision/bullet_world.h"
 #include "collision/collision_solver.h"
+#include "collision/plane_contacts.h"
+#include "collision/rebounds.h"
+#include "collision/round_contacts.h"
+#include "collision/surface_contacts.h"
 
 namespace thimble::render {
 namespace {
 
 using Eigen::Vector3d;
-
-// A floor's friction is that of the pair. It is stored in the floor itself, marked by this index.
-constexpr int kPairFriction = 1;
-
-btScalar pair_friction(const btCollisionObject* a, const btCollisionObject* b) {
-  for (const btCollisionObject* one : {a, b}) {
-    if (one->getUserIndex() == kPairFriction) return one->getFriction();
-  }
-  return std::sqrt(a->getFriction() * b->getFriction());
-}
-
-btScalar pair_restitution(const btCollisionObject* a, const btCollisionObject* b) {
-  return std::max(a->getRestitution(), b->getRestitution());
-}
-
-// At an edge between two triangles of a flat surface, the normal of the surface counts.
-bool adjust_edges(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
-                  const btCollisionObjectWrapper* b, int part, int index) {
-  if ((b->getCollisionObject()->getCollisionFlags() &
-       btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK) != 0) {
-    btAdjustInternalEdgeContacts(point, b, a, part, index);
-  }
-  return true;
-}
-
-// The rules for pairs are variables of Bullet's own; all solvers of a process use the same.
-void set_pair_rules() {
-  static const bool done = [] {
-    gCalculateCombinedFrictionCallback = &pair_friction;
-    gCalculateCombinedRestitutionCallback = &pair_restitution;
-    gContactAddedCallback = &adjust_edges;
-    return true;
-  }();
-  static_cast<void>(done);
-}
-
-/// A contact that rebounds, in Bullet's units.
-struct Rebound {
-  btRigidBody* a = nullptr;
-  btRigidBody* b = nullptr;
-  const btManifoldPoint* point = nullptr;
-  btVector3 normal;        // from b to a
-  btVector3 arm_a, arm_b;  // from the centres to the contact
-  btScalar wanted = 0;     // speed apart after the step
-  btScalar impulse = 0;
-};
-
-/// Bullet's dispatcher, which finds contacts before bodies overlap: as far ahead as two bodies can
-/// come within a step. So they are stopped where they touch. In Bullet's units.
-class ForesightedDispatcher final : public btCollisionDispatcher {
- public:
-  using btCollisionDispatcher::btCollisionDispatcher;
-  /// Sets the step, s.
-  void look_ahead(double step) noexcept { step_ = step; }
-  btPersistentManifold* getNewManifold(const btCollisionObject* a,
-                                       const btCollisionObject* b) override {
-    btPersistentManifold* const manifold = btCollisionDispatcher::getNewManifold(a, b);
-    set_reach(*manifold);
-    return manifold;
-  }
-  /// Sets how far ahead the contacts of a pair are found.
-  void set_reach(btPersistentManifold& manifold) const noexcept {
-    btScalar reach = kLeast;
-    for (const btCollisionObject* object : {manifold.getBody0(), manifold.getBody1()}) {
-      btVector3 middle;
-      btScalar radius = 0;
-      object->getCollisionShape()->getBoundingSphere(middle, radius);
-      if (object->isStaticObject()) continue;
-      reach += step_ * (object->getInterpolationLinearVelocity().length() +
-                        object->getInterpolationAngularVelocity().length() * radius);
-    }
-    manifold.setContactBreakingThreshold(reach);
-  }
-
- private:
-  static constexpr btScalar kLeast = 0.02;  // Bullet's own
-  double step_ = 1e-3;
-};
-
-/// Bullet's world, which reports contacts to the solver before their impulses are computed.
-class ObservedWorld final : public btDiscreteDynamicsWorld {
- public:
-  using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
-  /// Sets what is called.
-  template <class Observer>
-  void observe(Observer* observer) noexcept {
-    observer_ = observer;
-    call_ = [](void* who) { static_cast<Observer*>(who)->note_approaches(); };
-  }
-
- protected:
-  void performDiscreteCollisionDetection() override {
-    auto& dispatcher = *static_cast<ForesightedDispatcher*>(getDispatcher());
-    for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
-      btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
-      dispatcher.set_reach(manifold);
-      // A sphere has one point of contact with each convex body. Older ones would have another
-      // normal and push it forward.
-      if (has_sphere(manifold)) manifold.clearManifold();
-    }
-    btDiscreteDynamicsWorld::performDiscreteCollisionDetection();
-    for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
-      drop_drifted(*dispatcher.getManifoldByIndexInternal(m));
-    }
-  }
-  void solveConstraints(btContactSolverInfo& info) override {
-    if (call_ != nullptr) call_(observer_);
-    btDiscreteDynamicsWorld::solveConstraints(info);
-  }
-
- private:
-  static bool has_sphere(const btPersistentManifold& manifold) noexcept {
-    return manifold.getBody0()->getCollisionShape()->getShapeType() == SPHERE_SHAPE_PROXYTYPE ||
-           manifold.getBody1()->getCollisionShape()->getShapeType() == SPHERE_SHAPE_PROXYTYPE;
-  }
-  // Removes points whose ends have moved apart along the surface. Bullet does so too, but by the
-  // distance at which it finds contacts ahead.
-  static void drop_drifted(btPersistentManifold& manifold) noexcept {
-    constexpr btScalar kDrift = 0.02;  // Bullet's own limit
-    for (int p = manifold.getNumContacts() - 1; p >= 0; --p) {
-      const btManifoldPoint& point = manifold.getContactPoint(p);
-      const btVector3 apart = point.getPositionWorldOnA() - point.getPositionWorldOnB();
-      const btVector3 along = apart - point.m_normalWorldOnB * apart.dot(point.m_normalWorldOnB);
-      if (along.length2() > kDrift * kDrift) manifold.removeContactPoint(p);
-    }
-  }
-
-  void* observer_ = nullptr;
-  void (*call_)(void*) = nullptr;
-};
 
 class BulletSolver final : public CollisionSolver {
  public:
@@ -157,26 +35,39 @@ class BulletSolver final : public CollisionSolver {
   ~BulletSolver() override;
 
   void step(std::span<SolverState> bodies, double step) noexcept override;
+  std::vector<SolverOverlap> overlaps() override;
   const SolverCounters& counters() const noexcept override { return counters_; }
   /// Called by the world between finding contacts and computing their impulses.
   void note_approaches() noexcept;
 
  private:
+  struct Own {
+    std::unique_ptr<btRigidBody> body;
+    bool jointed = false;
+    Vector3d inertia;  // kg m^2 about the axes of B
+    FreeTurn free_turn;
+    // Before the loads of a substep.
+    Eigen::Quaterniond begin = Eigen::Quaterniond::Identity();
+    btVector3 v{0, 0, 0};
+    btVector3 omega{0, 0, 0};
+  };
   void add_bodies(const SolverPlan& plan, std::span<const SolverState> first);
   btRigidBody* add_fixed(const ColliderSet& set);
   void add_floor(const Floor& floor);
   void add_joint(const SolverJoint& joint, std::span<const SolverState> first);
-  void add_constraint(std::unique_ptr<btTypedConstraint> constraint);
-  void rebound(std::span<const SolverState> bodies) noexcept;
-  void push_apart(double share) noexcept;
+  static void turn_freely(const Own& own, double time) noexcept;
+  std::pair<btVector3, btVector3> under_load(const Own& own, const SolverState& state,
+                                             double part) const noexcept;
+  void keep_velocities() noexcept;
+  void bound_energy(std::span<const SolverState> bodies, double part, double most) noexcept;
+  void aim_friction(btManifoldPoint& point, const btRigidBody& a,
+                    const btRigidBody& b) const noexcept;
+  void rebound(double most) noexcept;
+  btVector3 velocity_before(const btRigidBody& body, const btVector3& arm) const noexcept;
   double kinetic_energy() const noexcept;
   void mark_met(std::span<SolverState> bodies) noexcept;
   btVector3 length(const Vector3d& v) const noexcept { return to_bullet(Vector3d(scale_ * v)); }
 
-  struct Own {
-    std::unique_ptr<btRigidBody> body;
-    bool jointed = false;
-  };
   struct FloorBody {
     Floor floor;
     btRigidBody* body = nullptr;  // one of `fixed_`
@@ -185,15 +76,18 @@ class BulletSolver final : public CollisionSolver {
   double scale_ = 1;  // Bullet's units per m
   std::size_t substeps_ = 1;
   double part_ = 1e-3;  // s, of a substep
-  double before_ = 0;   // energy of motion before a substep, in Bullet's units
+  bool has_motor_ = false;
   std::vector<BulletShapes> shapes_;
   btDefaultCollisionConfiguration configuration_;
   BoxPairs box_pairs_;
+  PlaneContacts plane_contacts_;
+  RoundContacts round_contacts_;
+  SurfaceContacts surface_contacts_;
   btGjkEpaPenetrationDepthSolver penetration_;
-  btConvexConvexAlgorithm::CreateFunc sphere_pairs_{&penetration_};
+  btConvexConvexAlgorithm::CreateFunc single_points_{&penetration_};
   ForesightedDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;
-  btSequentialImpulseConstraintSolver impulses_;
+  RoomyImpulses impulses_;
   ObservedWorld world_{&dispatcher_, &broadphase_, &impulses_, &configuration_};
   std::vector<Own> own_;
   std::vector<std::unique_ptr<btRigidBody>> fixed_;
@@ -201,58 +95,82 @@ class BulletSolver final : public CollisionSolver {
   std::vector<std::unique_ptr<btTypedConstraint>> constraints_;
   std::unique_ptr<btRigidBody> anchor_;  // the world, for joints
   SolverCounters counters_;
-  std::vector<Rebound> rebounds_;
-  std::vector<std::pair<btVector3, btVector3>> plain_;  // velocities without rebounds
+  Rebounds rebounds_;
+  std::vector<std::pair<btVector3, btVector3>> plain_;  // kept velocities
 };
 
-/// Returns the size of a typical body: the median radius of gyration, m.
-double typical_size(const SolverPlan& plan) {
-  std::vector<double> sizes;
+/// Returns the size of the smallest body: its radius of gyration, m.
+double smallest_size(const SolverPlan& plan) {
+  double least = std::numeric_limits<double>::infinity();
   for (const SolverBody& body : plan.bodies) {
-    sizes.push_back(std::sqrt(body.inertia.sum() / body.mass));
+    least = std::min(least, std::sqrt(body.inertia.sum() / body.mass));
   }
-  if (sizes.empty()) return 1;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle;
+  return plan.bodies.empty() ? 1 : least;
 }
 
 BulletSolver::BulletSolver(const SolverPlan& plan, std::span<const SolverState> first)
-    : scale_(1 / typical_size(plan)),
+    : scale_(1 / smallest_size(plan)),
       substeps_(std::max<std::size_t>(plan.quality.substeps, 1)),
-      part_(plan.step / static_cast<double>(substeps_)) {
+      part_(plan.step * static_cast<double>(std::max<std::size_t>(plan.quality.every, 1)) /
+            static_cast<double>(substeps_)) {
   set_pair_rules();
   btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
-  // Round bodies get up to three points in one step [Bullet], spheres only one.
+  // Pairs without an algorithm of ours get up to three points in one step [Bullet].
   configuration_.setConvexConvexMultipointIterations(3, 3);
   world_.setGravity({0, 0, 0});
   world_.observe(this);
   world_.setForceUpdateAllAabbs(false);
   // Bullet's own algorithms for two boxes and two spheres find no contact ahead.
   dispatcher_.registerCollisionCreateFunc(BOX_SHAPE_PROXYTYPE, BOX_SHAPE_PROXYTYPE, &box_pairs_);
+  const auto meet_by = [this](int a, int b, btCollisionAlgorithmCreateFunc& algorithm) {
+    dispatcher_.registerCollisionCreateFunc(a, b, &algorithm);
+    dispatcher_.registerCollisionCreateFunc(b, a, &algorithm);
+  };
   for (int other = 0; other < CONCAVE_SHAPES_START_HERE; ++other) {
-    dispatcher_.registerCollisionCreateFunc(SPHERE_SHAPE_PROXYTYPE, other, &sphere_pairs_);
-    dispatcher_.registerCollisionCreateFunc(other, SPHERE_SHAPE_PROXYTYPE, &sphere_pairs_);
+    meet_by(other, SPHERE_SHAPE_PROXYTYPE, single_points_);
+    meet_by(other, TRIANGLE_MESH_SHAPE_PROXYTYPE, surface_contacts_);
+    meet_by(other, STATIC_PLANE_PROXYTYPE, plane_contacts_);
+  }
+  constexpr int kRound[] = {CYLINDER_SHAPE_PROXYTYPE, CAPSULE_SHAPE_PROXYTYPE,
+                            CONE_SHAPE_PROXYTYPE};
+  for (const int round : kRound) {
+    meet_by(round, BOX_SHAPE_PROXYTYPE, round_contacts_);
+    meet_by(round, CONVEX_HULL_SHAPE_PROXYTYPE, round_contacts_);
+    for (const int other : kRound) meet_by(round, other, single_points_);
   }
   dispatcher_.look_ahead(part_);
   btContactSolverInfo& info = world_.getSolverInfo();
   info.m_numIterations = static_cast<int>(plan.quality.iterations);
+  // The directions of friction are those of aim_friction.
   info.m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_USE_2_FRICTION_DIRECTIONS |
-                      SOLVER_DISABLE_VELOCITY_DEPENDENT_FRICTION_DIRECTION |
                       SOLVER_ENABLE_FRICTION_DIRECTION_CACHING;
   info.m_warmstartingFactor = 1;
   // Overlaps are removed by moving the bodies, which gives them no speed.
   info.m_splitImpulse = 1;
   info.m_splitImpulsePenetrationThreshold = 0;
-  info.m_erp = 0.8;   // [chosen: four fifths of a joint's error are removed in each step]
-  info.m_erp2 = 0.1;  // [chosen: an overlap falls to 1/e in 10 ticks]
+  info.m_erp = 0.8;  // [chosen: four fifths of a joint's error are removed in each step]
+  // Share of an overlap that is removed in each step [chosen: slowly, because it lifts bodies; in
+  // larger steps a hand makes larger overlaps].
+  info.m_erp2 = plan.quality.every > 1 ? 0.1 : 0.01;
   info.m_linearSlop = 1e-4 * plan.step / 1e-3;
-  info.m_leastSquaresResidualThreshold = 0;
+  // No impulse changes a velocity by more in the last iteration. [chosen: 1e-6 of the weight in a
+  // tick]
+  constexpr double kSettled = 1e-8;  // m/s
+  info.m_leastSquaresResidualThreshold = scale_ * scale_ * kSettled * kSettled;
   add_bodies(plan, first);
   plain_.resize(own_.size());
-  rebounds_.reserve(64 * (own_.size() + 1));
-  for (const ColliderSet& set : plan.fixed_W) add_fixed(set);
+  constexpr double kSlow = 0.02;  // m/s; slower impacts do not rebound [chosen]
+  rebounds_.prepare(64 * (own_.size() + 1), scale_ * kSlow);
+  for (std::size_t k = 0; k < plan.fixed_W.size(); ++k) {
+    btRigidBody* const made = add_fixed(plan.fixed_W[k]);
+    if (made != nullptr) made->setUserIndex3(static_cast<int>(k));
+  }
   for (const SolverJoint& joint : plan.joints) add_joint(joint, first);
+  // A body in a heap has six neighbours with up to four points each, half of them its own.
+  constexpr std::size_t kContacts = 12;
+  impulses_.reserve(static_cast<int>(own_.size() + fixed_.size()),
+                    static_cast<int>(kContacts * (own_.size() + 4)),
+                    static_cast<int>(plan.joints.size()));
 }
 
 BulletSolver::~BulletSolver() {
@@ -285,6 +203,7 @@ void BulletSolver::add_bodies(const SolverPlan& plan, std::span<const SolverStat
     auto made = std::make_unique<btRigidBody>(info);
     made->setUserIndex2(static_cast<int>(i));
     made->setActivationState(DISABLE_DEACTIVATION);
+    made->setFlags(0);  // without Bullet's gyroscopic torque: turn_freely
     if (!body.turns) made->setAngularFactor(0);
     if (whole != nullptr) {
       const double inner = shapes.inner_radius();
@@ -296,7 +215,13 @@ void BulletSolver::add_bodies(const SolverPlan& plan, std::span<const SolverStat
     } else {
       world_.addRigidBody(made.get(), btBroadphaseProxy::DefaultFilter, 0);
     }
-    own_.push_back({.body = std::move(made)});
+    own_.push_back({.body = std::move(made),
+                    .jointed = false,
+                    .inertia = body.inertia,
+                    .free_turn = FreeTurn(body.inertia),
+                    .begin = first[i].q_WB,
+                    .v = {0, 0, 0},
+                    .omega = {0, 0, 0}});
   }
   // Each floor is met by its own bodies only.
   for (const FloorBody& floor : floors_) {
@@ -337,83 +262,21 @@ btRigidBody* BulletSolver::add_fixed(const ColliderSet& set) {
   return fixed_.back().get();
 }
 
-/// Returns a rotation whose z (or x) is along an axis.
-Eigen::Matrix3d frame_along(const Vector3d& axis, const Vector3d& own) {
-  return Eigen::Quaterniond::FromTwoVectors(own, axis.normalized()).toRotationMatrix();
-}
-
 void BulletSolver::add_joint(const SolverJoint& joint, std::span<const SolverState> first) {
-  const JointChoice& choice = joint.choice;
   if (!anchor_) {
     anchor_ = std::make_unique<btRigidBody>(
         btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &no_shape()));
   }
-  const auto body = [&](int i) -> btRigidBody& {
-    return i < 0 ? *anchor_ : *own_[static_cast<std::size_t>(i)].body;
-  };
-  const auto local = [&](int i, const Eigen::Matrix3d& R_WJ) {
-    const btTransform at_W = transform_of(R_WJ, scale_ * choice.p_W);
-    if (i < 0) return at_W;
+  const auto end = [&](int i) -> JointEnd {
+    if (i < 0) return {*anchor_, btTransform::getIdentity()};
+    Own& own = own_[static_cast<std::size_t>(i)];
+    own.jointed = true;
     const SolverState& state = first[static_cast<std::size_t>(i)];
-
-    return btTransform(to_bullet(state.q_WB), length(state.p_WC)).inverseTimes(at_W);
+    return {*own.body, btTransform(to_bullet(state.q_WB), length(state.p_WC))};
   };
-  for (const int i : {joint.a, joint.b}) {
-    if (i >= 0) own_[static_cast<std::size_t>(i)].jointed = true;
-  }
-  btRigidBody &a = body(joint.a), &b = body(joint.b);
-  switch (choice.kind) {
-    case JointKind::kHinge: {
-      const Eigen::Matrix3d R = frame_along(choice.axis_W, Vector3d::UnitZ());
-      auto hinge = std::make_unique<btHingeConstraint>(a, b, local(joint.a, R), local(joint.b, R));
-      if (choice.limits) {
-        hinge->setLimit((*choice.limits)[0], (*choice.limits)[1], 1, 0.3, 0);
-      } else {
-        hinge->setLimit(1, -1);
-      }
-      if (choice.speed || choice.friction > 0) {
-        const double torque = choice.speed ? choice.motor_max : choice.friction;
-        hinge->enableAngularMotor(true, choice.speed.value_or(0), scale_ * scale_ * part_ * torque);
-      }
-      add_constraint(std::move(hinge));
-      break;
-    }
-    case JointKind::kSlider: {
-      const Eigen::Matrix3d R = frame_along(choice.axis_W, Vector3d::UnitX());
-      auto slider =
-          std::make_unique<btSliderConstraint>(b, a, local(joint.b, R), local(joint.a, R), true);
-      slider->setLowerLinLimit(choice.limits ? scale_ * (*choice.limits)[0] : 1);
-      slider->setUpperLinLimit(choice.limits ? scale_ * (*choice.limits)[1] : -1);
-      slider->setLowerAngLimit(0);
-      slider->setUpperAngLimit(0);
-      slider->setDampingDirLin(0);
-      slider->setDampingLimLin(1);
-      if (choice.speed || choice.friction > 0) {
-        slider->setPoweredLinMotor(true);
-        slider->setTargetLinMotorVelocity(scale_ * choice.speed.value_or(0));
-        slider->setMaxLinMotorForce(scale_ * (choice.speed ? choice.motor_max : choice.friction));
-      }
-      add_constraint(std::move(slider));
-      break;
-    }
-    case JointKind::kBall: {
-      const Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-      add_constraint(std::make_unique<btPoint2PointConstraint>(a, b, local(joint.a, R).getOrigin(),
-                                                               local(joint.b, R).getOrigin()));
-      break;
-    }
-    case JointKind::kFixed: {
-      const Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-      add_constraint(
-          std::make_unique<btFixedConstraint>(a, b, local(joint.a, R), local(joint.b, R)));
-      break;
-    }
-    case JointKind::kSpring:
-      break;  // a force (CollisionWorld)
-  }
-}
-
-void BulletSolver::add_constraint(std::unique_ptr<btTypedConstraint> constraint) {
+  has_motor_ = has_motor_ || joint.choice.speed.has_value();
+  auto constraint = joint_of(joint.choice, end(joint.a), end(joint.b), scale_, part_);
+  if (constraint == nullptr) return;
   constraint->setOverrideNumSolverIterations(-1);
   world_.addConstraint(constraint.get(), true);
   constraints_.push_back(std::move(constraint));
@@ -438,13 +301,18 @@ void BulletSolver::step(std::span<SolverState> bodies, double step) noexcept {
     bodies[i].turn_W.setZero();
   }
   for (std::size_t k = 0; k < substeps_; ++k) {
+    double most = kinetic_energy();  // that the bodies may have after the substep
     for (std::size_t i = 0; i < own_.size(); ++i) {
-      btRigidBody& body = *own_[i].body;
-      body.clearForces();
-      body.applyCentralForce(length(bodies[i].f_W));
-      body.applyTorque(to_bullet(Vector3d(scale_ * scale_ * bodies[i].tau_W)));
+      Own& own = own_[i];
+      btRigidBody& body = *own.body;
+      own.begin = from_bullet(body.getWorldTransform().getRotation());
+      own.v = body.getLinearVelocity();
+      own.omega = body.getAngularVelocity();
+      // Loads as velocities: Bullet's rows of friction do not count torques.
+      const auto [v, omega] = under_load(own, bodies[i], part);
+      body.setLinearVelocity(v);
+      body.setAngularVelocity(omega);
     }
-    before_ = kinetic_energy();
     world_.stepSimulation(part, 0);
     mark_met(bodies);
     const double share = 1 / static_cast<double>(substeps_);
@@ -453,7 +321,14 @@ void BulletSolver::step(std::span<SolverState> bodies, double step) noexcept {
       bodies[i].way_W += share / scale_ * from_bullet(body.getLinearVelocity());
       bodies[i].turn_W += share * from_bullet(body.getAngularVelocity());
     }
-    rebound(bodies);
+    for (const Own& own : own_) turn_freely(own, part);
+    for (std::size_t i = 0; i < own_.size(); ++i) {
+      most += part * (bodies[i].f_W.dot(from_bullet(own_[i].body->getLinearVelocity())) * scale_ +
+                      scale_ * scale_ *
+                          bodies[i].tau_W.dot(from_bullet(own_[i].body->getAngularVelocity())));
+    }
+    if (!has_motor_) bound_energy(bodies, part, most);
+    if (rebounds_.any()) rebound(most);
   }
   for (std::size_t i = 0; i < own_.size(); ++i) {
     const btRigidBody& body = *own_[i].body;
@@ -463,6 +338,27 @@ void BulletSolver::step(std::span<SolverState> bodies, double step) noexcept {
     state.v_W = from_bullet(body.getLinearVelocity()) / scale_;
     state.omega_W = from_bullet(body.getAngularVelocity());
   }
+}
+
+// Bullet turns a body at a constant angular velocity. Here its angular momentum after the impulses
+// is kept, and it turns as a free body does.
+void BulletSolver::turn_freely(const Own& own, double time) noexcept {
+  btRigidBody& body = *own.body;
+  const Vector3d omega_W = from_bullet(body.getAngularVelocity());
+  const Eigen::Quaterniond before = own.begin;
+  const Eigen::Quaterniond bullets = from_bullet(body.getWorldTransform().getRotation());
+  const Vector3d spin_B = before.conjugate() * omega_W;
+  const Vector3d momentum_W = before * Vector3d(own.inertia.cwiseProduct(spin_B));
+  Eigen::Quaterniond now = before;
+  own.free_turn.turn(time, momentum_W, now);
+  // What Bullet has turned it to leave an overlap.
+  now = bullets * (turn_by(time * omega_W) * before).conjugate() * now;
+  btTransform place = body.getWorldTransform();
+  place.setRotation(to_bullet(now.normalized()));
+  body.setWorldTransform(place);
+  const Vector3d after_B = (now.conjugate() * momentum_W).cwiseQuotient(own.inertia);
+  body.setAngularVelocity(to_bullet(Vector3d(now * after_B)));
+  body.updateInertiaTensor();
 }
 
 double BulletSolver::kinetic_energy() const noexcept {
@@ -476,11 +372,35 @@ double BulletSolver::kinetic_energy() const noexcept {
   return sum;
 }
 
-// Bullet's own rebounds begin from where the bodies are at the end of a tick, which is inside of
-// each other. Here bodies that approach are first stopped where they touch, and then get their
-// speed apart.
+// Bullet bounds friction in two directions, each by itself. Along the motion it is that of Coulomb.
+void BulletSolver::aim_friction(btManifoldPoint& point, const btRigidBody& a,
+                                const btRigidBody& b) const noexcept {
+  constexpr double kStill = 1e-4;  // m/s; slower points keep fixed directions [chosen]
+  const btVector3& n = point.m_normalWorldOnB;
+  const btVector3 apart =
+      a.getVelocityInLocalPoint(point.getPositionWorldOnA() - a.getCenterOfMassPosition()) -
+      b.getVelocityInLocalPoint(point.getPositionWorldOnB() - b.getCenterOfMassPosition());
+  const btVector3 along = apart - n * n.dot(apart);
+  btVector3& first = point.m_lateralFrictionDir1;
+  if (along.length2() > scale_ * scale_ * kStill * kStill) {
+    first = along.normalized();
+    point.m_lateralFrictionDir2 = btCross(first, n);
+  } else {
+    btPlaneSpace1(n, first, point.m_lateralFrictionDir2);
+  }
+  point.m_contactPointFlags |= BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED;
+}
+
+// Returns the velocity of a point of a body before the loads of a substep.
+btVector3 BulletSolver::velocity_before(const btRigidBody& body,
+                                        const btVector3& arm) const noexcept {
+  const int i = body.getUserIndex2();  // -1: not a body
+  if (i < 0) return {0, 0, 0};
+  const Own& own = own_[static_cast<std::size_t>(i)];
+  return own.v + btCross(own.omega, arm);
+}
+
 void BulletSolver::note_approaches() noexcept {
-  constexpr double kSlow = 0.02;  // m/s; slower impacts do not rebound [chosen]
   rebounds_.clear();
   for (int m = 0; m < dispatcher_.getNumManifolds(); ++m) {
     btPersistentManifold& manifold = *dispatcher_.getManifoldByIndexInternal(m);
@@ -488,82 +408,107 @@ void BulletSolver::note_approaches() noexcept {
       btManifoldPoint& point = manifold.getContactPoint(p);
       const btScalar restitution = pair_restitution(manifold.getBody0(), manifold.getBody1());
       point.m_combinedRestitution = 0;
-      if (!(restitution > 0)) continue;
       // Bullet's solver writes only to the bodies of a manifold.
       auto* const a = const_cast<btRigidBody*>(btRigidBody::upcast(manifold.getBody0()));
       auto* const b = const_cast<btRigidBody*>(btRigidBody::upcast(manifold.getBody1()));
-      Rebound one;
-      one.a = a;
-      one.b = b;
-      one.point = &point;
-      one.normal = point.m_normalWorldOnB;
-      one.arm_a = point.getPositionWorldOnA() - a->getWorldTransform().getOrigin();
-      one.arm_b = point.getPositionWorldOnB() - b->getWorldTransform().getOrigin();
-      const btScalar apart = one.normal.dot(a->getVelocityInLocalPoint(one.arm_a) -
-                                            b->getVelocityInLocalPoint(one.arm_b));
-      if (!(apart < -scale_ * kSlow)) continue;
-      one.wanted = -restitution * apart;
-      if (rebounds_.size() < rebounds_.capacity()) rebounds_.push_back(one);
+      aim_friction(point, *a, *b);
+      if (!(restitution > 0)) continue;
+      const btVector3 arm_a = point.getPositionWorldOnA() - a->getCenterOfMassPosition();
+      const btVector3 arm_b = point.getPositionWorldOnB() - b->getCenterOfMassPosition();
+      const btScalar apart =
+          point.m_normalWorldOnB.dot(velocity_before(*a, arm_a) - velocity_before(*b, arm_b));
+      rebounds_.note(point, *a, *b, arm_a, arm_b, -apart, restitution);
     }
   }
 }
 
-// Gives the share (0 to 1) of the rebounds to the velocities without them.
-void BulletSolver::push_apart(double share) noexcept {
-  for (std::size_t i = 0; i < own_.size(); ++i) {
-    own_[i].body->setLinearVelocity(plain_[i].first);
-    own_[i].body->setAngularVelocity(plain_[i].second);
-  }
-  for (const Rebound& one : rebounds_) {
-    const btVector3 impulse = share * one.impulse * one.normal;
-    one.a->applyImpulse(impulse, one.arm_a);
-    one.b->applyImpulse(-impulse, one.arm_b);
-  }
+// Returns the velocities of a body after the loads of a substep, without contacts and joints.
+std::pair<btVector3, btVector3> BulletSolver::under_load(const Own& own, const SolverState& state,
+                                                         double part) const noexcept {
+  const btVector3 torque = to_bullet(Vector3d(scale_ * scale_ * state.tau_W));
+  return {own.v + part * own.body->getInvMass() * length(state.f_W),
+          own.omega + part * (own.body->getInvInertiaTensorWorld() * torque)};
 }
 
-void BulletSolver::rebound(std::span<const SolverState> bodies) noexcept {
-  // A contact without an impulse has not been reached.
-  std::erase_if(rebounds_,
-                [](const Rebound& one) { return !(one.point->getAppliedImpulse() > 0); });
-  if (rebounds_.empty()) return;
-  double most = before_;  // the energy without a loss
+void BulletSolver::keep_velocities() noexcept {
   for (std::size_t i = 0; i < own_.size(); ++i) {
     const btRigidBody& body = *own_[i].body;
     plain_[i] = {body.getLinearVelocity(), body.getAngularVelocity()};
-    most += part_ * (length(bodies[i].f_W).dot(body.getLinearVelocity()) +
-                     scale_ * scale_ * to_bullet(bodies[i].tau_W).dot(body.getAngularVelocity()));
   }
-  const double least = kinetic_energy();
-  constexpr int kRounds = 20;  // [chosen: a row of ten bodies]
-  for (int round = 0; round < kRounds; ++round) {
-    for (Rebound& one : rebounds_) {
-      const btScalar apart = one.normal.dot(one.a->getVelocityInLocalPoint(one.arm_a) -
-                                            one.b->getVelocityInLocalPoint(one.arm_b));
-      const btScalar gain = one.a->computeImpulseDenominator(
-                                one.arm_a + one.a->getCenterOfMassPosition(), one.normal) +
-                            one.b->computeImpulseDenominator(
-                                one.arm_b + one.b->getCenterOfMassPosition(), one.normal);
-      const btScalar total = std::max<btScalar>(one.impulse + (one.wanted - apart) / gain, 0);
-      const btVector3 more = (total - one.impulse) * one.normal;
-      one.impulse = total;
-      one.a->applyImpulse(more, one.arm_a);
-      one.b->applyImpulse(-more, one.arm_b);
+}
+
+// Impulses of Bullet that have not converged, or began from those of the last step, may give
+// energy. Then all impulses of this step are a little smaller, which keeps the momentum.
+void BulletSolver::bound_energy(std::span<const SolverState> bodies, double part,
+                                double most) noexcept {
+  const double all = kinetic_energy();
+  if (all <= most) return;
+  keep_velocities();
+  const auto take = [&](double share) {
+    for (std::size_t i = 0; i < own_.size(); ++i) {
+      const Own& own = own_[i];
+      btRigidBody& body = *own.body;
+      const auto [v, omega] = under_load(own, bodies[i], part);
+      body.setLinearVelocity(v + share * (plain_[i].first - v));
+      body.setAngularVelocity(omega + share * (plain_[i].second - omega));
+    }
+    return kinetic_energy();
+  };
+  const double none = take(0), half = take(0.5);
+  take(share_within(most, none, half, all));
+}
+
+void BulletSolver::rebound(double most) noexcept {
+  keep_velocities();
+  const double none = kinetic_energy();
+  rebounds_.solve();
+  // Several contacts with friction may gain energy together.
+  const double all = kinetic_energy();
+  if (all <= most) return;
+  const auto take = [&](double share) {
+    for (std::size_t i = 0; i < own_.size(); ++i) {
+      own_[i].body->setLinearVelocity(plain_[i].first);
+      own_[i].body->setAngularVelocity(plain_[i].second);
+    }
+    rebounds_.give(share);
+    return kinetic_energy();
+  };
+  take(share_within(most, none, take(0.5), all));
+}
+
+std::vector<SolverOverlap> BulletSolver::overlaps() {
+  world_.find_contacts();
+  std::vector<SolverOverlap> found;
+  for (int m = 0; m < dispatcher_.getNumManifolds(); ++m) {
+    const btPersistentManifold& manifold = *dispatcher_.getManifoldByIndexInternal(m);
+    btScalar depth = 0;
+    for (int p = 0; p < manifold.getNumContacts(); ++p) {
+      depth = std::max(depth, -manifold.getContactPoint(p).getDistance());
+    }
+    SolverOverlap one;
+    double size = std::numeric_limits<double>::infinity();
+    for (const btCollisionObject* object : {manifold.getBody0(), manifold.getBody1()}) {
+      const int i = object->getUserIndex2();
+      if (i < 0) {
+        one.fixed = object->getUserIndex3();
+        continue;
+      }
+      (one.body < 0 ? one.body : one.other) = i;
+      const Own& own = own_[static_cast<std::size_t>(i)];
+      size = std::min(size, std::sqrt(own.inertia.sum() * own.body->getInvMass()));
+    }
+    one.depth = depth / scale_;
+    if (one.body < 0 || !(one.depth > 0.01 * size)) continue;
+    const auto same = std::find_if(found.begin(), found.end(), [&](const SolverOverlap& known) {
+      return known.body == one.body && known.other == one.other && known.fixed == one.fixed;
+    });
+    if (same == found.end()) {
+      found.push_back(one);
+    } else {
+      same->depth = std::max(same->depth, one.depth);
     }
   }
-  if (kinetic_energy() <= most) return;
-  // Several contacts with friction may gain energy together. The energy is a
-  // quadratic function of the share; two of its values and the one in the middle determine it.
-  const double all = kinetic_energy();
-  push_apart(0.5);
-  const double middle = kinetic_energy();
-  const double square = 2 * (all + least) - 4 * middle;
-  const double slope = all - least - square;
-  double share = 0;
-  if (most > least) {
-    const double root = slope * slope + 4 * square * (most - least);
-    share = square > 0 && root >= 0 ? (std::sqrt(root) - slope) / (2 * square) : 0;
-  }
-  push_apart(std::clamp(share, 0.0, 1.0));
+  return found;
 }
 
 void BulletSolver::mark_met(std::span<SolverState> bodies) noexcept {

@@ -1,17 +1,91 @@
 #include "collision/collide_objects.h"
 
+#include <fmt/core.h>
+
 #include <utility>
 
 #include "body/motion/held_touch.h"
 #include "body/motion/moving_touch.h"
+#include "collision/collider_surface.h"
 #include "collision/colliding_motion.h"
 #include "collision/collision_world.h"
 
 namespace thimble::render {
 namespace {
 
+/// Returns the shapes of all objects for drawing. `body_of` has the number of each object's body,
+/// -1 if it does not move. Takes the shapes out of the plan, which the solver has copied.
+std::shared_ptr<const CollisionSurfaces> surfaces_of(const std::vector<CollidingObject>& objects,
+                                                     const std::vector<int>& body_of,
+                                                     const CollisionWorld& world,
+                                                     SolverPlan& plan) {
+  std::vector<PlacedColliders> placed;
+  auto fixed_W = plan.fixed_W.begin();
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    PlacedColliders& one = placed.emplace_back();
+    if (body_of[i] < 0) {
+      one.set = std::move(*fixed_W++);
+    } else {
+      const auto number = static_cast<std::size_t>(body_of[i]);
+      const RigidBody& body = world.motion(number).body();
+      one.set = std::move(plan.bodies[number].shape_B);
+      one.place = {.R_WB = body.q_WB().toRotationMatrix(), .p_WB = body.p_WC()};
+    }
+    one.own = collides_as_touched(objects[i].solid, objects[i].collision, one.set);
+    if (one.own) one.set.shapes.clear();
+  }
+  return collision_surfaces(std::move(placed));
+}
+
 driver::Error named(const CollidingObject& object, const driver::Error& error) {
   return driver::Error{object.name + ": " + error.message};
+}
+
+/// Returns a sentence for each pair of objects that overlap.
+std::vector<std::string> overlaps_of(const std::vector<CollidingObject>& objects,
+                                     const std::vector<int>& body_of, CollisionSolver& solver) {
+  std::vector<const CollidingObject*> moving, fixed;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    (body_of[i] < 0 ? fixed : moving).push_back(&objects[i]);
+  }
+  std::vector<std::string> notes;
+  for (const SolverOverlap& one : solver.overlaps()) {
+    const std::string other = one.other >= 0   ? moving[static_cast<std::size_t>(one.other)]->name
+                              : one.fixed >= 0 ? fixed[static_cast<std::size_t>(one.fixed)]->name
+                                               : "its floor";
+    notes.push_back(fmt::format(
+        "{} and {} overlap by {:.3g} mm at the begin, and will be moved apart. Place them apart, "
+        "or set collision: {{shape: none}} for one of them.",
+        moving[static_cast<std::size_t>(one.body)]->name, other, 1e3 * one.depth));
+  }
+  return notes;
+}
+
+/// Adds a sentence if the masses of two bodies that may touch differ too much for the solver.
+void note_masses(const std::vector<CollidingObject>& objects, const std::vector<int>& body_of,
+                 const SolverPlan& plan, std::vector<std::string>& notes) {
+  constexpr double kRatio = 100;  // a body of 1 kg sinks into one of 1 g below it [measured]
+  const CollidingObject *light = nullptr, *heavy = nullptr;
+  double least = 0, most = 0;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (body_of[i] < 0) continue;
+    const SolverBody& body = plan.bodies[static_cast<std::size_t>(body_of[i])];
+    if (body.shape_B.shapes.empty()) continue;
+    if (light == nullptr || body.mass < least) {
+      light = &objects[i];
+      least = body.mass;
+    }
+    if (heavy == nullptr || body.mass > most) {
+      heavy = &objects[i];
+      most = body.mass;
+    }
+  }
+  if (light == nullptr || !(most > kRatio * least)) return;
+  notes.push_back(
+      fmt::format("{} has {:.3g} times the mass of {}. A body of more than {:g} times the mass of "
+                  "one that it rests on or pulls at sinks into it, or opens the joint. Choose "
+                  "masses that are nearer to each other.",
+                  heavy->name, most / least, light->name, kRatio));
 }
 
 }  // namespace
@@ -60,7 +134,12 @@ driver::Result<CollidingTouches> collide_objects(std::vector<CollidingObject> ob
   }
   auto world = CollisionWorld::build(std::move(members), plan, std::move(springs), hands);
   if (!world) return world.error();
-  CollidingTouches result{.touches = {}, .bodies = *world};
+  std::vector<std::string> notes = overlaps_of(objects, body_of, (*world)->solver());
+  note_masses(objects, body_of, plan, notes);
+  CollidingTouches result{.touches = {},
+                          .bodies = *world,
+                          .surfaces = surfaces_of(objects, body_of, **world, plan),
+                          .notes = std::move(notes)};
   for (std::size_t body = 0; body < moving.size(); ++body) {
     CollidingObject& object = *moving[body];
     auto& own = result.touches.emplace_back();

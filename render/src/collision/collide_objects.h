@@ -7,6 +7,7 @@
 
 #include "body/motion/shared_body.h"
 #include "collision/collider_of.h"
+#include "collision/collision_surfaces.h"
 #include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/body/joint_choice.h"
@@ -40,6 +41,10 @@ struct CollidingTouches {
   /// The bodies. With several hands, the code that runs the loop steps them once per tick; with
   /// one, the force laws do.
   std::shared_ptr<SharedBody> bodies;
+  /// The shapes that collide, for drawing.
+  std::shared_ptr<const CollisionSurfaces> surfaces;
+  /// Sentences about what will not move as expected: overlaps, and masses too different.
+  std::vector<std::string> notes;
 };
 
 /// Makes objects that move and collide. The error names the object and the invalid number. The

@@ -57,6 +57,14 @@ struct SolverState {
   bool met = false;  ///< Set by the step: whether the body touched something or has a joint.
 };
 
+/// Two objects that overlap.
+struct SolverOverlap {
+  int body = -1;
+  int other = -1;    ///< Number of a body; -1 if it never moves.
+  int fixed = -1;    ///< Number of the object that never moves; -1 for a floor or a body.
+  double depth = 0;  ///< m
+};
+
 /// Counts of a solver.
 struct SolverCounters {
   std::uint64_t steps = 0;         ///< Steps.
@@ -73,9 +81,12 @@ class CollisionSolver {
   virtual ~CollisionSolver() = default;
 
   /// Advances all bodies by `step` s. The result of a body that is not `met` is not to be used: it
-  /// flies as without a solver. Real-time: no lock; memory is allocated when there are more points
-  /// of contact than in any step before.
+  /// flies as without a solver. Real-time: no lock; memory is allocated when there are more groups
+  /// of touching bodies than in any step before.
   virtual void step(std::span<SolverState> bodies, double step) noexcept = 0;
+  /// Returns the pairs that overlap before the first step, by more than a hundredth of the smaller
+  /// one's radius of gyration, each once. Real-time: never from the servo thread.
+  virtual std::vector<SolverOverlap> overlaps() = 0;
   /// Returns the counts. Real-time: safe.
   virtual const SolverCounters& counters() const noexcept = 0;
 };

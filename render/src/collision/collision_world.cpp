@@ -8,6 +8,7 @@
 
 #include "body/motion/body_coupling.h"
 #include "body/motion/move_object.h"
+#include "body/motion/turn.h"
 #include "math/elementary.h"
 
 namespace thimble::render {
@@ -59,6 +60,9 @@ driver::Result<std::shared_ptr<CollisionWorld>> CollisionWorld::build(
   auto solver = build_collision_solver(plan, world->states_);
   if (!solver) return solver.error();
   world->solver_ = std::move(solver).value();
+  world->every_ = std::max<std::size_t>(plan.quality.every, 1);
+  world->loads_.resize(world->members_.size());
+  world->courses_.resize(world->members_.size());
   world->pushes_.resize(hands * world->members_.size());
   world->given_.resize(hands);
   world->first_ = world->energy();
@@ -97,13 +101,13 @@ Vector3d CollisionWorld::gain_at(std::size_t body, const Vector3d& p_W,
 
 void CollisionWorld::push_at(std::size_t body, const Vector3d& f_W, const Vector3d& p_W) noexcept {
   constexpr double kForceMax = 1e6;  // N, N m; no arm pushes harder
-  SolverState& state = states_[body];
-  const Vector3d tau_W = (p_W - state.p_WC).cross(f_W);
+  Load& load = loads_[body];
+  const Vector3d tau_W = (p_W - members_[body].motion.body().p_WC()).cross(f_W);
   // Written so that NaN means no force.
   if (!(f_W.squaredNorm() <= kForceMax * kForceMax)) return;
   if (!(tau_W.squaredNorm() <= kForceMax * kForceMax)) return;
-  state.f_W += f_W;
-  if (members_[body].turns) state.tau_W += tau_W;
+  load.f_W += f_W;
+  if (members_[body].turns) load.tau_W += tau_W;
 }
 
 void CollisionWorld::push(std::size_t hand, std::size_t body, const Vector3d& f_W,
@@ -152,23 +156,17 @@ void CollisionWorld::end_of_body(double step) noexcept {
   this->step(step);
 }
 
-void CollisionWorld::step(double step) noexcept {
-  // Written so that NaN moves nothing.
-  if (!(step > 0) || !std::isfinite(step)) return;
-  pull_springs(step);
-  for (std::size_t hand = 0; hand < hands_; ++hand) {
-    for (std::size_t i = 0; i < members_.size(); ++i) {
-      Push& push = push_of(hand, i);
-      push.power = push.f_W.dot(members_[i].motion.velocity_at(push.p_W));
-      push.arm_W = push.p_W - states_[i].p_WC;
-    }
-  }
-  // The free flight of each body is computed beside the solver's step.
+// The free flight of each body is computed beside the solver's step.
+void CollisionWorld::solve(double step) noexcept {
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const RigidBody& body = members_[i].motion.body();
     const RigidBodySettings& settings = body.settings();
     SolverState& state = states_[i];
-    members_[i].motion.body().load(state.f_W, state.tau_W);
+    Course& course = courses_[i];
+    const auto ticks = static_cast<double>(every_);
+    course = {.assumed = {course.sum.f_W / ticks, course.sum.tau_W / ticks}};
+    state.f_W = course.assumed.f_W;
+    state.tau_W = course.assumed.tau_W;
     state.p_WC = body.p_WC();
     state.q_WB = body.q_WB();
     state.v_W = body.v_WC();
@@ -190,20 +188,70 @@ void CollisionWorld::step(double step) noexcept {
   }
   solver_->step(states_, step);
   for (std::size_t i = 0; i < members_.size(); ++i) {
+    const RigidBody& body = members_[i].motion.body();
     SolverState& state = states_[i];
-    RigidMotion& motion = members_[i].motion;
     // Written so that a result that is NaN is not used.
     const bool known = state.p_WC.allFinite() && state.q_WB.coeffs().allFinite() &&
                        state.v_W.allFinite() && state.omega_W.allFinite();
-    if (state.met && known) {
+    state.met = state.met && known;
+    if (!state.met || every_ == 1) continue;
+    courses_[i].v_W = (state.p_WC - body.p_WC()) / step;
+    courses_[i].omega_W = turn_between(body.q_WB(), state.q_WB) / step;
+  }
+}
+
+// The solver has applied the loads of its tick over the whole step. What later ticks differ from
+// them moves the body as a free one, up to the next step.
+void CollisionWorld::follow_course(std::size_t i, double step) noexcept {
+  Course& course = courses_[i];
+  SolverState& state = states_[i];
+  RigidMotion& motion = members_[i].motion;
+  const RigidBody& body = motion.body();
+  const MassProperties& mass = body.settings().mass;
+  const Vector3d gain_v = step / mass.mass * (loads_[i].f_W - course.assumed.f_W);
+  Vector3d gain_omega(0, 0, 0);
+  if (members_[i].turns) {
+    const Vector3d tau_B = body.q_WB().conjugate() * (loads_[i].tau_W - course.assumed.tau_W);
+    gain_omega = step * (body.q_WB() * tau_B.cwiseQuotient(mass.inertia));
+  }
+  state.way_W = course.v_W + course.more_v_W + gain_v / 2;
+  state.turn_W = course.omega_W + course.more_omega_W + gain_omega / 2;
+  course.more_v_W += gain_v;
+  course.more_omega_W += gain_omega;
+  motion.place(body.p_WC() + step * state.way_W, turn_by(step * state.turn_W) * body.q_WB(),
+               state.v_W + course.more_v_W, state.omega_W + course.more_omega_W);
+}
+
+void CollisionWorld::step(double step) noexcept {
+  // Written so that NaN moves nothing.
+  if (!(step > 0) || !std::isfinite(step)) return;
+  pull_springs(step);
+  for (std::size_t hand = 0; hand < hands_; ++hand) {
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+      Push& push = push_of(hand, i);
+      push.power = push.f_W.dot(members_[i].motion.velocity_at(push.p_W));
+      push.arm_W = push.p_W - members_[i].motion.body().p_WC();
+    }
+  }
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    members_[i].motion.body().load(loads_[i].f_W, loads_[i].tau_W);
+    courses_[i].sum.f_W += loads_[i].f_W;
+    courses_[i].sum.tau_W += loads_[i].tau_W;
+  }
+  if (phase_ == 0) solve(static_cast<double>(every_) * step);
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    SolverState& state = states_[i];
+    RigidMotion& motion = members_[i].motion;
+    if (!state.met) {
+      motion.step(step);
+    } else if (every_ == 1) {
       motion.place(state.p_WC, state.q_WB, state.v_W, state.omega_W);
     } else {
-      motion.step(step);
+      follow_course(i, step);
     }
-    state.p_WC = motion.body().p_WC();
-    state.f_W.setZero();
-    state.tau_W.setZero();
+    loads_[i] = {};
   }
+  phase_ = (phase_ + 1) % every_;
   for (std::size_t hand = 0; hand < hands_; ++hand) {
     for (std::size_t i = 0; i < members_.size(); ++i) {
       Push& push = push_of(hand, i);

@@ -70,8 +70,8 @@ class CollisionWorld final : public SharedBody {
 
   std::size_t hands() const noexcept { return hands_; }
   std::size_t size() const noexcept { return members_.size(); }
-  const SolverState& state(std::size_t body) const noexcept { return states_[body]; }
   const CollisionSolver& solver() const noexcept { return *solver_; }
+  CollisionSolver& solver() noexcept { return *solver_; }
 
  private:
   /// Push of a hand on a body in this tick.
@@ -83,7 +83,23 @@ class CollisionWorld final : public SharedBody {
   };
 
   CollisionWorld() = default;
+  /// Force and torque about the centre of mass, N and N m.
+  struct Load {
+    Eigen::Vector3d f_W{0, 0, 0};
+    Eigen::Vector3d tau_W{0, 0, 0};
+  };
+  /// Way of a body that met something, between two steps of the solver.
+  struct Course {
+    Eigen::Vector3d v_W{0, 0, 0};  // mean velocities that lead to the solver's result
+    Eigen::Vector3d omega_W{0, 0, 0};
+    Load assumed{};                     // by the solver
+    Load sum{};                         // of all ticks since the last step of the solver
+    Eigen::Vector3d more_v_W{0, 0, 0};  // velocities by loads other than assumed
+    Eigen::Vector3d more_omega_W{0, 0, 0};
+  };
   void pull_springs(double step) noexcept;
+  void solve(double step) noexcept;
+  void follow_course(std::size_t body, double step) noexcept;
   void push_at(std::size_t body, const Eigen::Vector3d& f_W, const Eigen::Vector3d& p_W) noexcept;
   Push& push_of(std::size_t hand, std::size_t body) noexcept {
     return pushes_[hand * members_.size() + body];
@@ -94,6 +110,10 @@ class CollisionWorld final : public SharedBody {
   std::vector<SpringJoint> springs_;
   std::size_t hands_ = 1;
   std::vector<SolverState> states_;
+  std::size_t every_ = 1;  // ticks in a step of the solver
+  std::size_t phase_ = 0;  // ticks since then
+  std::vector<Course> courses_;
+  std::vector<Load> loads_;    // of each body in this tick: pushes and springs
   std::vector<Push> pushes_;   // of each hand and body
   std::vector<double> given_;  // work of each hand, J
   std::size_t ended_ = 0;      // bodies whose tick has ended

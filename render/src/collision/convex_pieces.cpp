@@ -79,29 +79,60 @@ struct Cut {
   double gain = -1;
 };
 
-Cut best_cut(const Part& part) {
-  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+/// Box around the hull of a part.
+struct Extent {
+  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Vector3d high = -low;
+};
+
+Extent extent_of(const Part& part) {
+  Extent extent;
   for (const Vector3d& p : part.hull) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
+    extent.low = extent.low.cwiseMin(p);
+    extent.high = extent.high.cwiseMax(p);
   }
+  return extent;
+}
+
+/// Returns the cut at the coordinate `axis` = x0. If one side is empty, the gain is negative.
+Cut cut_at(const Part& part, int axis, double x0) {
+  Cut cut;
+  for (const Triangle& triangle : part.triangles) {
+    clip(triangle, axis, x0, -1, cut.low.triangles);
+    clip(triangle, axis, x0, 1, cut.high.triangles);
+  }
+  if (cut.low.triangles.empty() || cut.high.triangles.empty()) return cut;
+  take_hull(cut.low);
+  take_hull(cut.high);
+  cut.gain = part.volume - cut.low.volume - cut.high.volume;
+  return cut;
+}
+
+Cut best_cut(const Part& part) {
+  const auto [low, high] = extent_of(part);
   Cut best;
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = 1; i <= kCuts; ++i) {
-      const double x0 = low[axis] + i * (high[axis] - low[axis]) / (kCuts + 1);
-      Cut cut;
-      for (const Triangle& triangle : part.triangles) {
-        clip(triangle, axis, x0, -1, cut.low.triangles);
-        clip(triangle, axis, x0, 1, cut.high.triangles);
-      }
-      if (cut.low.triangles.empty() || cut.high.triangles.empty()) continue;
-      take_hull(cut.low);
-      take_hull(cut.high);
-      cut.gain = part.volume - cut.low.volume - cut.high.volume;
+      Cut cut = cut_at(part, axis, low[axis] + i * (high[axis] - low[axis]) / (kCuts + 1));
       if (cut.gain > best.gain) best = std::move(cut);
     }
   }
   return best;
+}
+
+/// Returns the cut through the middle of a part, across its longest side.
+Cut middle_cut(const Part& part) {
+  const auto [low, high] = extent_of(part);
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  return cut_at(part, axis, (low[axis] + high[axis]) / 2);
+}
+
+/// Returns the volume that a closed surface encloses, m^3.
+double enclosed_by(const std::vector<Triangle>& triangles) {
+  double six = 0;
+  for (const auto& [a, b, c] : triangles) six += a.dot(b.cross(c));
+  return std::abs(six) / 6;
 }
 
 }  // namespace
@@ -114,6 +145,8 @@ std::vector<std::vector<Vector3d>> convex_pieces(const TriangleMesh& mesh, std::
   }
   take_hull(all);
   const double enough = kGainLeast * all.volume;
+  const double enclosed = enclosed_by(all.triangles);
+  double covered = all.volume;  // by the hulls of all parts
   struct Open {
     Part part;
     Cut cut;
@@ -128,9 +161,20 @@ std::vector<std::vector<Vector3d>> convex_pieces(const TriangleMesh& mesh, std::
     const auto widest =
         std::max_element(parts.begin(), parts.end(),
                          [](const Open& a, const Open& b) { return a.cut.gain < b.cut.gain; });
-    if (!(widest->cut.gain > enough)) break;
-    Cut cut = std::move(widest->cut);
-    parts.erase(widest);
+    Open* chosen = &*widest;
+    if (!(widest->cut.gain > enough)) {
+      // A first cut through a ring gains nothing, as both halves have the hull of half a disc. The
+      // next ones do.
+      if (!(covered - enclosed > enough)) break;
+      chosen = &*std::max_element(parts.begin(), parts.end(), [](const Open& a, const Open& b) {
+        return a.part.volume < b.part.volume;
+      });
+      chosen->cut = middle_cut(chosen->part);
+      if (chosen->cut.low.hull.empty() || chosen->cut.high.hull.empty()) break;
+    }
+    Cut cut = std::move(chosen->cut);
+    covered -= chosen->part.volume - cut.low.volume - cut.high.volume;
+    parts.erase(parts.begin() + (chosen - parts.data()));
     open(std::move(cut.low));
     open(std::move(cut.high));
   }

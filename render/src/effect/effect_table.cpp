@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 
+#include "surface/contact_transient.h"
 #include "surface/friction/baseline/naive.h"
 #include "surface/friction/bristle.h"
 #include "surface/friction/dahl.h"
@@ -11,6 +12,7 @@
 #include "surface/friction/lugre.h"
 #include "surface/friction/paper.h"
 #include "surface/friction/stiction_point.h"
+#include "surface/law/formula_law.h"
 #include "surface/texture/height_map.h"
 #include "surface/texture/sandpaper.h"
 #include "surface/texture/sines.h"
@@ -52,7 +54,9 @@ constexpr auto kEffects = kinds_of<  //
     StictionPointFriction,           //
     Sines,                           //
     Sandpaper,                       //
-    HeightMap                        //
+    HeightMap,                       //
+    ContactTransient,                //
+    FormulaLaw                       //
     >();
 
 }  // namespace

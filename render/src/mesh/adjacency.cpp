@@ -1,7 +1,9 @@
 #include "mesh/adjacency.h"
 
 #include <string>
+#include <utility>
 
+#include "mesh/half_edges.h"
 #include "mesh/mesh_edges.h"
 
 namespace thimble::render {
@@ -13,7 +15,27 @@ std::string edge_name(const EdgeUse& use) {
 
 }  // namespace
 
+std::optional<Adjacency> adjacency_if_closed(const TriangleMesh& mesh) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!has_three_vertices(mesh, t)) return std::nullopt;
+  }
+  const HalfEdges half_edges(mesh.triangles, mesh.vertices.size());
+  Adjacency neighbours(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& corners = mesh.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      // If each side has exactly one side in the opposite direction, each edge has two triangles:
+      // a second side in the same direction would be the second opposite of the other.
+      const std::int32_t other = half_edges.opposite(corners[k == 2 ? 0 : k + 1], corners[k]);
+      if (other < 0) return std::nullopt;
+      neighbours[t][k] = other;
+    }
+  }
+  return neighbours;
+}
+
 driver::Result<Adjacency> find_adjacency(const TriangleMesh& mesh) {
+  if (auto closed = adjacency_if_closed(mesh)) return *std::move(closed);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (!has_three_vertices(mesh, t)) {
       return driver::Error{"Triangle " + std::to_string(t) +

@@ -6,13 +6,6 @@
 
 namespace thimble::render {
 
-bool has_three_vertices(const TriangleMesh& mesh, std::size_t triangle) {
-  const auto& [a, b, c] = mesh.triangles[triangle];
-  const auto size = static_cast<std::int64_t>(mesh.vertices.size());
-  const auto exists = [size](std::int32_t vertex) { return vertex >= 0 && vertex < size; };
-  return exists(a) && exists(b) && exists(c) && a != b && b != c && c != a;
-}
-
 std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh) {
   // Sides are first distributed to their smaller vertex, in the order of the triangles; then only
   // the few of one vertex have to be sorted.
@@ -44,15 +37,6 @@ std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh) {
     first = begin[v];
   }
   return uses;
-}
-
-std::size_t end_of_edge(const std::vector<EdgeUse>& uses, std::size_t begin) {
-  std::size_t end = begin + 1;
-  while (end < uses.size() && uses[end].low == uses[begin].low &&
-         uses[end].high == uses[begin].high) {
-    ++end;
-  }
-  return end;
 }
 
 Groups::Groups(std::size_t size) : parent_(size) {

@@ -25,10 +25,24 @@ struct EdgeUse {
 THIMBLE_EXPORT std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh);
 
 /// Returns the end of the group of sides that share the edge of side `begin`.
-THIMBLE_EXPORT std::size_t end_of_edge(const std::vector<EdgeUse>& uses, std::size_t begin);
+inline std::size_t end_of_edge(const std::vector<EdgeUse>& uses, std::size_t begin) {
+  std::size_t end = begin + 1;
+  while (end < uses.size() && uses[end].low == uses[begin].low &&
+         uses[end].high == uses[begin].high) {
+    ++end;
+  }
+  return end;
+}
 
 /// Returns whether a triangle names three different vertices that exist.
-bool has_three_vertices(const TriangleMesh& mesh, std::size_t triangle);
+inline bool has_three_vertices(const TriangleMesh& mesh, std::size_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  // A negative number is a very large one.
+  const auto exists = [size = mesh.vertices.size()](std::int32_t vertex) {
+    return static_cast<std::uint32_t>(vertex) < size;
+  };
+  return exists(a) && exists(b) && exists(c) && a != b && b != c && c != a;
+}
 
 /// Joins numbers into groups (union by smaller number, with path halving).
 class Groups {

@@ -23,6 +23,7 @@ struct WorldCounters {
   std::uint64_t begun = 0;      ///< Contacts begun.
   std::uint64_t hidden = 0;     ///< Proxies of a tracker that were refused: inside another solid.
   std::uint64_t unsettled = 0;  ///< Ticks that reached the bound; the next tick continues.
+  int steps_max = 0;            ///< Maximum number of steps in a tick (WorldSolid::steps).
 };
 
 /// Several solids with one proxy: the tip feels the union of all of them. W, m.
@@ -105,6 +106,7 @@ class THIMBLE_EXPORT ContactWorld {
   };
 
   void move(const Eigen::Vector3d& p_WT) noexcept;
+  bool settle(const Eigen::Vector3d& p_WT) noexcept;
   bool advance(const Eigen::Vector3d& goal) noexcept;
   void begin(std::int32_t solid, std::int32_t triangle, const Eigen::Vector3d& p_W) noexcept;
   bool follow_active(const Eigen::Vector3d& p_WT, const Eigen::Vector3d& ahead) noexcept;
@@ -116,7 +118,8 @@ class THIMBLE_EXPORT ContactWorld {
   bool agrees(const Eigen::Vector3d& p_WT, const Push& push) const noexcept;
   void revive_ended() noexcept;
   bool inside_ended() const noexcept;
-  bool inside_active() const noexcept;
+  bool led_by_tracker(std::int32_t solid) const noexcept;
+  bool enters_solid() noexcept;
   void drop_ended() noexcept;
   Planes planes() const noexcept;
   Push push(const Eigen::Vector3d& p_WT) const noexcept;
@@ -142,6 +145,9 @@ class THIMBLE_EXPORT ContactWorld {
 
   Eigen::Vector3d p_WQ_{0, 0, 0};  // proxy of the last tick, lifted
   bool has_proxy_ = false;
+  bool has_trackers_ = false;         // whether a solid is not followed closely by its own tracker
+  bool closely_ = false;              // whether trackers are refused in this attempt
+  int steps_ = 0;                     // of the solids in this tick
   Eigen::Vector3d reached_{0, 0, 0};  // place on the proxy's path of this tick
   Push push_;
   std::array<Active, kActiveMax> active_;

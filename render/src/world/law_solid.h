@@ -15,6 +15,7 @@
 #include "thimble/render/contact_state.h"
 #include "thimble/render/object_touch.h"
 #include "track/god_object.h"
+#include "track/mesh_contact.h"
 #include "track/moving_contact.h"
 #include "track/path_bounded.h"
 #include "world/holding_faces.h"
@@ -148,6 +149,9 @@ class LawSolid final : public WorldSolid {
   }
   bool follows_closely() const noexcept override {
     return std::is_same_v<Contact, GodObjectContact>;
+  }
+  bool is_exact() const noexcept override {
+    return std::is_same_v<Contact, GodObjectContact> || std::is_same_v<Contact, MeshContact>;
   }
   const ContactState& follow_closely(const ContactState& last,
                                      const Eigen::Vector3d& p_W) noexcept override {

@@ -1,31 +1,11 @@
-/* The sphere of the hello programs, in the unit and axes of each interface. */
+/* What the hello programs share besides their sphere: their log and their command line. */
 #ifndef SPHERE_H
 #define SPHERE_H
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-typedef struct {
-  double centre[3], radius, stiffness;
-} Sphere;
-
-/* Computes the force that pushes a tip at p out; returns its depth. */
-static double sphere_force(const Sphere* sphere, const double p[3], double f[3]) {
-  double d[3], distance = 0;
-  int i;
-  for (i = 0; i < 3; ++i) {
-    d[i] = p[i] - sphere->centre[i];
-    distance += d[i] * d[i];
-    f[i] = 0;
-  }
-  distance = sqrt(distance);
-  if (!(distance < sphere->radius) || !(distance > 0)) return 0;
-  for (i = 0; i < 3; ++i) {
-    f[i] = sphere->stiffness * (sphere->radius - distance) * d[i] / distance;
-  }
-  return sphere->radius - distance;
-}
+#include "force_laws.h"
 
 /* The requested forces, in memory until the program ends. */
 typedef struct {

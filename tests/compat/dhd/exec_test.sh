@@ -13,6 +13,8 @@ expect_own 0 'gripper: PASSED' "$thimble" exec --clock virtual --arm polhem "$cl
 expect 0 '^Gripper ' "$thimble" exec --clock virtual --arm polhem "$clients/dhd_client_gripper"
 expect_own 0 'two devices: PASSED' "$thimble" exec --clock virtual --arm vintage_phantom --arm falcon "$clients/dhd_client_two_devices"
 expect_own 0 'watchdog trip: PASSED' "$thimble" exec --clock virtual "$clients/dhd_client_watchdog_trip"
+expect_own 0 'ABI of DHD: 0 failures' "$thimble" exec --clock virtual "$clients/dhd_client_abi"
+expect_own 0 'headers: PASSED' "$thimble" exec --clock virtual "$clients/dhd_client_headers"
 expect_own 0 'hold and move: PASSED' "$thimble" exec --clock virtual "$clients/dhd_client_hold_and_move"
 # In virtual time the arm waits for the program: all ticks of two runs are bit-identical.
 for run in first second; do

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <mutex>
 #include <thread>
@@ -17,7 +18,7 @@ constexpr double kForceMax = 5;   // N, of the gate
 constexpr std::int64_t kStall_ns = 20'000'000;
 
 struct FakeArm {
-  bool open = false, enabled = false;
+  bool open = false, enabled = false, regulated = false;
   ArmFacts facts;
   ArmReading reading;
   ForceRequest asked;
@@ -97,6 +98,7 @@ void reset(const Setup& setup) {
     arm.facts.has_orientation = arm.facts.has_gimbal = setup.has_orientation;
     arm.facts.has_gripper = setup.has_gripper;
     arm.facts.has_joints = setup.has_joints;
+    arm.facts.simulated = setup.simulated;
     arm.facts.force_max = kForceMax;
     arm.facts.stiffness_max = 800;
     arm.facts.damping_max = 8;
@@ -135,6 +137,11 @@ driver::Fault fault(int arm) {
   return all[static_cast<std::size_t>(arm)].gate.fault();
 }
 
+bool regulated(int arm) {
+  const std::lock_guard lock(mutex);
+  return all[static_cast<std::size_t>(arm)].regulated;
+}
+
 void end_run() {
   const std::lock_guard lock(mutex);
   over = true;
@@ -153,9 +160,19 @@ int count() noexcept {
   return made.arms;
 }
 
+int listed(const char*) noexcept {
+  return count();
+}
+
+bool is_taken(int arm) noexcept {
+  const std::lock_guard lock(mutex);
+  return arm == made.taken;
+}
+
 std::string open(int arm, const char*) {
   const std::lock_guard lock(mutex);
   if (arm < 0 || arm >= made.arms) return "there is no such arm";
+  if (arm == made.taken) return "another program has it";
   all[static_cast<std::size_t>(arm)].open = true;
   return {};
 }
@@ -179,7 +196,7 @@ bool is_running(int arm) noexcept {
   return opened(arm) && !over;
 }
 
-const ArmFacts& facts(int arm) noexcept {
+ArmFacts facts(int arm) noexcept {
   static const ArmFacts kNone;
   return arm >= 0 && arm < made.arms ? all[static_cast<std::size_t>(arm)].facts : kNone;
 }
@@ -193,6 +210,18 @@ bool read(int arm, ArmReading& reading) noexcept {
   const FakeArm* found = opened(arm);
   if (found) reading = found->reading;
   return found;
+}
+
+// As if the Jacobian grew with the first joint; no joint exceeds a right angle.
+bool jacobian_at(int arm, const std::array<double, 3>& q, std::array<double, 9>& J_WT) noexcept {
+  const std::lock_guard lock(mutex);
+  if (!opened(arm) || !made.has_joints) return false;
+  for (const double angle : q) {
+    if (!(std::abs(angle) < 1.57)) return false;
+  }
+  const Eigen::Matrix3d J = (1 + q[0]) * fake::jacobian();
+  for (Eigen::Index k = 0; k < 9; ++k) J_WT[static_cast<std::size_t>(k)] = J(k / 3, k % 3);
+  return true;
 }
 
 bool wait_for_tick(int arm, std::uint64_t after) noexcept {
@@ -278,6 +307,13 @@ bool set_force_limit(int arm, double force) noexcept {
   const std::lock_guard lock(mutex);
   FakeArm* found = opened(arm);
   if (found) found->force_limit = force;
+  return found;
+}
+
+bool set_regulated(int arm, bool regulated) noexcept {
+  const std::lock_guard lock(mutex);
+  FakeArm* found = opened(arm);
+  if (found) found->regulated = regulated;
   return found;
 }
 

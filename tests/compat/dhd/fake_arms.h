@@ -21,6 +21,8 @@ struct Setup {
   bool has_gripper = true;      ///< They measure a gripper.
   bool has_joints = true;       ///< They have joints, with `jacobian`.
   bool held = true;             ///< No force moves the tip.
+  bool simulated = true;        ///< No real motors.
+  int taken = -1;               ///< Number of an arm that another program has open; -1: none.
 };
 
 /// Closes all arms and makes new ones.
@@ -35,6 +37,8 @@ Eigen::Vector3d f_sent_W(int arm);
 ForceRequest asked(int arm);
 /// Returns the fault of an arm's gate.
 driver::Fault fault(int arm);
+/// Returns whether the program moves the tip (arms::set_regulated).
+bool regulated(int arm);
 /// Ends the run, as `thimble exec` does.
 void end_run();
 /// Returns the functions that were called wrongly, in order.

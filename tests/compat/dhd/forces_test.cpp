@@ -42,6 +42,19 @@ TEST_F(CompatDhd, TorqueAndGripperForceAreCountedOnly) {
   EXPECT_EQ(fake::asked(0).gripper, 0.4);
 }
 
+TEST_F(CompatDhd, TorquesOfTheWristsJointsAreCountedOnly) {
+  ASSERT_EQ(dhdOpenID(0), 0);
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_EQ(dhdSetForceAndWristJointTorquesAndGripperForce(1, 2, 3, 0.1, 0.2, 0.3, 4), 0);
+  }
+  EXPECT_EQ(fake::f_sent_W(0), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(fake::asked(0).torque_W, (std::array<double, 3>{0.1, 0.2, 0.3}));
+  EXPECT_EQ(fake::asked(0).gripper, 4);
+  ASSERT_EQ(dhdSetForceAndWristJointTorques(3, 2, 1, 0.3, 0, 0), 0);
+  EXPECT_EQ(fake::f_sent_W(0), Eigen::Vector3d(3, 2, 1));
+  EXPECT_EQ(fake::asked(0).torque_W, (std::array<double, 3>{0.3, 0, 0}));
+}
+
 TEST_F(CompatDhd, EachForceWaitsForItsTick) {
   begin_and_open({});
   ArmReading before, after;

@@ -38,6 +38,18 @@ TEST_F(CompatDhd, ReportsWhyNoArmIsOpened) {
   EXPECT_NE(std::string(dhdErrorGetLastStr()).find("thimble exec"), std::string::npos);
 }
 
+TEST_F(CompatDhd, ArmOfAnotherProgramIsNotAvailable) {
+  begin({.taken = 0});
+  EXPECT_EQ(dhdGetDeviceCount(), 2);
+  EXPECT_EQ(dhdGetAvailableCount(), 1);
+  EXPECT_EQ(dhdOpenID(0), -1);
+  EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_DEVICE_NOT_READY);
+  EXPECT_EQ(dhdGetDeviceID(), -1);
+  EXPECT_EQ(dhdOpen(), 1) << "the first arm that no other program has";
+  EXPECT_EQ(dhdOpenID(0), -1);
+  EXPECT_EQ(dhdGetDeviceID(), 1) << "a refused opening does not change the default arm";
+}
+
 TEST_F(CompatDhd, MinusOneIsTheLastChosenArm) {
   ASSERT_EQ(dhdOpenID(0), 0);
   ASSERT_EQ(dhdOpenID(1), 1);

@@ -120,6 +120,52 @@ TEST_F(CompatDhd, ReturnsOpeningAndSpeedOfTheGripper) {
   EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_NOT_AVAILABLE);
 }
 
+TEST_F(CompatDhd, WithoutAGripperOnlySwitchingTheButtonOffSucceeds) {
+  begin_and_open({.has_gripper = false});
+  EXPECT_EQ(dhdEmulateButton(DHD_OFF), 0);
+  EXPECT_EQ(dhdEmulateButton(DHD_ON), -1);
+  EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_NOT_AVAILABLE);
+  double gap = 7;
+  EXPECT_EQ(dhdGetGripperGap(&gap), -1);
+  EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_NOT_AVAILABLE);
+  EXPECT_EQ(gap, 7);
+}
+
+TEST_F(CompatDhd, ReturnsTheJacobianAtAnyJointAngles) {
+  begin_and_open({});
+  dhdSetBaseAngleZDeg(90);
+  double now[3][3], same[3][3], other[3][3];
+  ASSERT_EQ(dhdGetDeltaJacobian(now), 0);
+  ASSERT_EQ(dhdDeltaJointAnglesToJacobian(0, 0, 0, same), 0);
+  ASSERT_EQ(dhdDeltaJointAnglesToJacobian(0.5, 0.1, 0, other), 0);
+  for (int i = 0; i < 9; ++i) {
+    EXPECT_EQ(same[i / 3][i % 3], now[i / 3][i % 3]);
+    EXPECT_NEAR(other[i / 3][i % 3], 1.5 * now[i / 3][i % 3], 1e-12);
+  }
+  EXPECT_EQ(dhdDeltaJointAnglesToJacobian(3, 0, 0, other), -1);
+  EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_GEOMETRY);
+  EXPECT_EQ(dhdWristJointAnglesToJacobian(0, 0, 0, other), -1);
+  EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_NOT_AVAILABLE);
+}
+
+TEST_F(CompatDhd, ReturnsTheJointsOfBaseAndWrist) {
+  begin_and_open({});
+  fake::change(0, [](ArmReading& now) {
+    now.q = {0.1, 0.2, 0.3}, now.gimbal = {1, 2, 3}, now.counts = {10, -20, 30};
+  });
+  double q[3], wrist[3];
+  int counts[3];
+  ASSERT_EQ(dhdGetDeltaJointAngles(&q[0], &q[1], &q[2]), 0);
+  ASSERT_EQ(dhdGetWristJointAngles(&wrist[0], &wrist[1], &wrist[2]), 0);
+  ASSERT_EQ(dhdGetDeltaEncoders(&counts[0], &counts[1], &counts[2]), 0);
+  EXPECT_EQ(q[2], 0.3);
+  EXPECT_EQ(wrist[1], 2);
+  EXPECT_EQ(counts[1], -20);
+  begin_and_open({.has_orientation = false});
+  EXPECT_EQ(dhdGetWristJointAngles(&wrist[0], &wrist[1], &wrist[2]), -1);
+  EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_NOT_AVAILABLE);
+}
+
 TEST_F(CompatDhd, ReturnsButtonsAndTheEmulatedButton) {
   begin_and_open({});
   fake::change(0, [](ArmReading& now) { now.buttons = 0b1010, now.gripper = 0.03F; });
@@ -173,10 +219,13 @@ TEST_F(CompatDhd, ReturnsJointsAndConvertsTorquesToTipForce) {
   dhdSetEffectorMass(0.2);
   ASSERT_EQ(dhdJointAnglesToGravityJointTorques(angles, gravity), 0);
   EXPECT_NEAR(gravity[2], fake::jacobian()(2, 2) * 0.2 * 9.80665, 1e-12);
+  double raised[DHD_MAX_DOF] = {1, 0, 0, 0, 0, 0, 0, 0};
+  ASSERT_EQ(dhdJointAnglesToGravityJointTorques(raised, gravity), 0);
+  EXPECT_NEAR(gravity[2], 2 * fake::jacobian()(2, 2) * 0.2 * 9.80665, 1e-12);
   ASSERT_EQ(dhdJointAnglesToInertiaMatrix(angles, inertia), 0);
   EXPECT_EQ(inertia[1][1], 0.2);
   EXPECT_EQ(inertia[4][4], 0);
-  angles[0] += 0.01;
+  angles[0] = 2;  // the arm cannot have it
   EXPECT_EQ(dhdJointAnglesToGravityJointTorques(angles, gravity), -1);
 }
 

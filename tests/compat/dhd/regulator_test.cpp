@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 #include <thread>
+#include <utility>
 
 #include "compat/dhd/dhd_test.h"
 #include "compat/dhd/straight_path.h"
@@ -107,8 +108,77 @@ TEST_F(CompatDhd, BlockedMotionTimesOut) {
   ASSERT_EQ(drdStart(), 0);
   EXPECT_EQ(drdMoveToPos(0.03, 0, 0, true), -1);
   EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_TIMEOUT);
-  EXPECT_TRUE(drdIsMoving());
+  EXPECT_FALSE(drdIsMoving());
   EXPECT_LE(fake::f_sent_W(0).norm(), 5 + 1e-9);
+}
+
+TEST_F(CompatDhd, BlockedMotionsEndWithinTheirBounds) {
+  begin_and_open({.held = true});
+  ASSERT_EQ(drdStart(), 0);
+  wait_for(0.05);
+  const auto seconds = [](auto move) {
+    ArmReading before, after;
+    arms::read(0, before);
+    EXPECT_EQ(move(), 0);
+    while (drdIsMoving()) drdWaitForTick();
+    arms::read(0, after);
+    return 1e-9 * static_cast<double>(after.time_ns - before.time_ns);
+  };
+  ASSERT_EQ(drdSetPosMoveParam(100, 0.5, 1e6), 0);
+  const double fast = seconds([] { return drdMoveToPos(0.05, 0, 0, false); });
+  // Without an upper bound: the fake arms' time passes while this thread is not scheduled. A motion
+  // that never ended would hang the test.
+  constexpr double kEarly = 0.02;
+  EXPECT_GT(fast, 1.875 * 0.05 / 0.5 + 0.8 - kEarly);
+  ASSERT_EQ(drdHold(), 0);
+  wait_for(0.05);
+  ASSERT_EQ(drdSetPosTrackParam(100, 0.5, 1e6), 0);
+  const double tracked = seconds([] { return drdTrackPos(0.05, 0, 0); });
+  EXPECT_GT(tracked, 0.05 / 0.5 + 0.8 - kEarly);
+}
+
+TEST_F(CompatDhd, MotionRightAfterTheStartBeginsAtTheTip) {
+  begin_and_open({.held = false});
+  fake::change(0, [](ArmReading& now) { now.p_WT = {0.05, 0, 0}; });
+  ASSERT_EQ(drdStart(), 0);
+  ASSERT_EQ(drdMoveToPos(0.05, 0.001, 0, false), 0);
+  double strongest = 0;
+  while (drdIsMoving()) strongest = std::max(strongest, fake::f_sent_W(0).norm());
+  EXPECT_LT(strongest, 0.5) << "N; a path from another point begins with a jerk";
+}
+
+TEST_F(CompatDhd, InitializationMovesASimulatedArmToTheMiddle) {
+  begin_and_open({.held = false});
+  fake::change(0, [](ArmReading& now) { now.p_WT = {0.04, -0.03, 0.02}; });
+  ASSERT_EQ(drdAutoInit(), 0);
+  EXPECT_LT(tip().norm(), 2e-3);
+  EXPECT_TRUE(drdIsRunning()) << "the arm is held there";
+  EXPECT_EQ(dhdSetForce(0, 0, 0.1), 0) << "a force of the program ends that";
+  EXPECT_FALSE(drdIsRunning());
+}
+
+TEST_F(CompatDhd, InitializationDoesNotMoveARealArm) {
+  begin_and_open({.held = false, .simulated = false});
+  fake::change(0, [](ArmReading& now) { now.p_WT = {0.04, 0, 0}; });
+  ASSERT_EQ(drdAutoInit(), 0);
+  EXPECT_FALSE(drdIsRunning());
+  EXPECT_FALSE(arms::force_enabled(0));
+  EXPECT_EQ(tip().x(), 0.04);
+}
+
+TEST_F(CompatDhd, RegulationMarksTheArmAsMovedByTheProgram) {
+  begin_and_open({.held = false});
+  EXPECT_FALSE(fake::regulated(0));
+  ASSERT_EQ(drdStart(), 0);
+  wait_for(0.05);
+  EXPECT_TRUE(fake::regulated(0));
+  ASSERT_EQ(drdRegulatePos(false), 0);
+  wait_for(0.05);
+  EXPECT_FALSE(fake::regulated(0));
+  ASSERT_EQ(drdRegulatePos(true), 0);
+  wait_for(0.05);
+  ASSERT_EQ(drdStop(true), 0);
+  EXPECT_FALSE(fake::regulated(0));
 }
 
 TEST_F(CompatDhd, RegulationKeepsItsForceRatio) {
@@ -121,6 +191,88 @@ TEST_F(CompatDhd, RegulationKeepsItsForceRatio) {
   EXPECT_NEAR(fake::f_sent_W(0).norm(), 0.5, 1e-9);
   EXPECT_EQ(drdSetMotRatioMax(1.1), -1);
   EXPECT_EQ(drdSetMotRatioMax(std::nan("")), -1);
+}
+
+TEST_F(CompatDhd, GainsScaleTheForceOfRegulation) {
+  begin_and_open({.held = true});
+  EXPECT_EQ(drdGetEncPGain(), 1);
+  EXPECT_EQ(drdGetEncDGain(), 1);
+  EXPECT_EQ(drdGetEncIGain(), 0);
+  ASSERT_EQ(drdStart(), 0);
+  wait_for(0.05);
+  ASSERT_EQ(drdMoveToPos(0.005, 0, 0, false), 0);
+  const auto force = [](double gain) {
+    EXPECT_EQ(drdSetEncPGain(gain), 0);
+    EXPECT_EQ(drdGetEncPGain(), gain);
+    wait_for(1);
+    return fake::f_sent_W(0).x();
+  };
+  EXPECT_NEAR(force(1), 0.005 * 400, 1e-6) << "half of the declared stiffness";
+  EXPECT_NEAR(force(0.5), 0.005 * 200, 1e-6);
+  EXPECT_NEAR(force(2), 0.005 * 800, 1e-6);
+  EXPECT_NEAR(force(1000), 0.005 * 800, 1e-6) << "never more than is declared";
+  ASSERT_EQ(drdSetEncDGain(0.1), 0);
+  EXPECT_NEAR(force(1000), 0.005 * 160, 1e-6) << "at most what the damping keeps stable";
+  EXPECT_EQ(drdSetEncIGain(3), 0);
+  EXPECT_EQ(drdGetEncIGain(), 3);
+  EXPECT_EQ(drdSetEncPGain(-1), -1);
+  EXPECT_EQ(dhdErrorGetLast(), DHD_ERROR_INVALID);
+  ASSERT_EQ(drdClose(), 0);
+  ASSERT_EQ(drdOpenID(0), 0);
+  EXPECT_EQ(drdGetEncPGain(), 1) << "an opened arm has its own gains";
+}
+
+TEST_F(CompatDhd, OpeningResetsTheSettingsOfRegulation) {
+  begin_and_open({});
+  ASSERT_EQ(drdSetMotRatioMax(0.1), 0);
+  ASSERT_EQ(drdRegulatePos(false), 0);
+  ASSERT_EQ(drdEnableFilter(false), 0);
+  ASSERT_EQ(drdSetPosMoveParam(3, 4, 5), 0);
+  ASSERT_EQ(drdClose(), 0);
+  ASSERT_EQ(drdOpenID(0), 0);
+  double acceleration = 0, speed = 0, jerk = 0;
+  ASSERT_EQ(drdGetPosMoveParam(&acceleration, &speed, &jerk), 0);
+  EXPECT_NE(speed, 4);
+  EXPECT_EQ(drdGetMotRatioMax(), 1);
+  EXPECT_TRUE(drdIsFiltering());
+  ASSERT_EQ(drdStart(), 0);
+  EXPECT_EQ(drdMoveToPos(0, 0, 0, false), 0) << "the position is regulated again";
+}
+
+TEST_F(CompatDhd, BoundsOfMotionsWithoutMotorsAreStored) {
+  begin_and_open({});
+  using Set = int (*)(double, double, double, char);
+  using Get = int (*)(double*, double*, double*, char);
+  const std::pair<Set, Get> all[] = {
+      {drdSetRotMoveParam, drdGetRotMoveParam},   {drdSetRotTrackParam, drdGetRotTrackParam},
+      {drdSetGripMoveParam, drdGetGripMoveParam}, {drdSetGripTrackParam, drdGetGripTrackParam},
+      {drdSetEncMoveParam, drdGetEncMoveParam},   {drdSetEncTrackParam, drdGetEncTrackParam}};
+  double number = 1;
+  for (const auto& [set, get] : all) {
+    ASSERT_EQ(set(number, number + 1, number + 2, 0), 0);
+    number += 3;
+  }
+  number = 1;
+  for (const auto& [set, get] : all) {
+    double acceleration = 0, speed = 0, jerk = 0;
+    ASSERT_EQ(get(&acceleration, &speed, &jerk, 0), 0);
+    EXPECT_EQ(acceleration, number);
+    EXPECT_EQ(speed, number + 1);
+    EXPECT_EQ(jerk, number + 2);
+    number += 3;
+  }
+}
+
+TEST_F(CompatDhd, ReleasedArmTakesTorquesOfTheWristsJoints) {
+  begin_and_open({.held = true});
+  ASSERT_EQ(drdStart(), 0);
+  ASSERT_EQ(drdRegulatePos(false), 0);
+  double force[DHD_MAX_DOF] = {1, 2, 0, 0.5, 0, 0, 3, 0};
+  ASSERT_EQ(drdSetForceAndWristJointTorquesAndGripperForce(force), 0);
+  wait_for(0.2);
+  EXPECT_EQ(fake::f_sent_W(0), Eigen::Vector3d(1, 2, 0));
+  EXPECT_EQ(fake::asked(0).torque_W[0], 0.5);
+  EXPECT_EQ(fake::asked(0).gripper, 3);
 }
 
 TEST_F(CompatDhd, RegulationFollowsAPointWithinItsBounds) {

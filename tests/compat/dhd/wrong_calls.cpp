@@ -62,6 +62,14 @@ std::vector<Call> calls_with_null() {
   NULLS(drdGetVelocity, 7);
   NULLS(drdGetPosMoveParam, 3);
   NULLS(drdGetPosTrackParam, 3);
+  NULLS(drdGetRotMoveParam, 3);
+  NULLS(drdGetRotTrackParam, 3);
+  NULLS(drdGetGripMoveParam, 3);
+  NULLS(drdGetGripTrackParam, 3);
+  NULLS(drdGetEncMoveParam, 3);
+  NULLS(drdGetEncTrackParam, 3);
+  NULLS(dhdGetDeltaJointAngles, 3);
+  NULLS(dhdGetWristJointAngles, 3);
   const auto add = [&](const char* name, std::function<int(char)> call) {
     calls.push_back({name, std::move(call)});
   };
@@ -72,6 +80,14 @@ std::vector<Call> calls_with_null() {
   add("dhdGetVelocityThreshold", [](char id) { return dhdGetVelocityThreshold(nullptr, id); });
   add("dhdGetOrientationFrame", [](char id) { return dhdGetOrientationFrame(nullptr, id); });
   add("dhdGetDeltaJacobian", [](char id) { return dhdGetDeltaJacobian(nullptr, id); });
+  add("dhdDeltaJointAnglesToJacobian",
+      [](char id) { return dhdDeltaJointAnglesToJacobian(0, 0, 0, nullptr, id); });
+  for (int null = 0; null < 3; ++null) {
+    add("dhdGetDeltaEncoders", [=](char id) {
+      return dhdGetDeltaEncoders(null == 0 ? nullptr : whole, null == 1 ? nullptr : whole,
+                                 null == 2 ? nullptr : whole, id);
+    });
+  }
   add("dhdGetEnc", [](char id) { return dhdGetEnc(nullptr, 0xff, id); });
   add("dhdSetJointTorques", [](char id) { return dhdSetJointTorques(nullptr, 0xff, id); });
   for (int null = 0; null < 4; ++null) {
@@ -118,6 +134,9 @@ std::vector<Call> calls_with_bad_numbers() {
              {"dhdSetBaseAngleZRad", dhdSetBaseAngleZRad},
              {"dhdSetBaseAngleZDeg", dhdSetBaseAngleZDeg},
              {"dhdSetMaxForce", dhdSetMaxForce},
+             {"drdSetEncPGain", drdSetEncPGain},
+             {"drdSetEncIGain", drdSetEncIGain},
+             {"drdSetEncDGain", drdSetEncDGain},
              {"drdSetMotRatioMax", drdSetMotRatioMax}}) {
       add(name, [set = set, bad](char id) { return set(bad, id); });
     }
@@ -128,12 +147,32 @@ std::vector<Call> calls_with_bad_numbers() {
       add("drdSetPosMoveParam", [=](char id) { return drdSetPosMoveParam(n(0), n(1), n(2), id); });
       add("drdSetPosTrackParam",
           [=](char id) { return drdSetPosTrackParam(n(0), n(1), n(2), id); });
+      for (const auto& [name, set] : std::map<const char*, int (*)(double, double, double, char)>{
+               {"drdSetRotMoveParam", drdSetRotMoveParam},
+               {"drdSetRotTrackParam", drdSetRotTrackParam},
+               {"drdSetGripMoveParam", drdSetGripMoveParam},
+               {"drdSetGripTrackParam", drdSetGripTrackParam},
+               {"drdSetEncMoveParam", drdSetEncMoveParam},
+               {"drdSetEncTrackParam", drdSetEncTrackParam}}) {
+        add(name, [=, set = set](char id) { return set(n(0), n(1), n(2), id); });
+      }
+      add(
+          "dhdDeltaJointAnglesToJacobian",
+          [=](char id) {
+            double rows[3][3];
+            return dhdDeltaJointAnglesToJacobian(n(0), n(1), n(2), rows, id);
+          },
+          DHD_ERROR_GEOMETRY);
       add("dhdSetForce", [=](char id) { return dhdSetForce(n(0), n(1), n(2), id); });
     }
     for (int i = 0; i < 7; ++i) {
       const auto n = [=](int k) { return k == i ? bad : 0.1; };
       add("dhdSetForceAndTorqueAndGripperForce", [=](char id) {
         return dhdSetForceAndTorqueAndGripperForce(n(0), n(1), n(2), n(3), n(4), n(5), n(6), id);
+      });
+      add("dhdSetForceAndWristJointTorquesAndGripperForce", [=](char id) {
+        return dhdSetForceAndWristJointTorquesAndGripperForce(n(0), n(1), n(2), n(3), n(4), n(5),
+                                                              n(6), id);
       });
     }
   }
@@ -156,6 +195,15 @@ std::vector<Call> calls_with_bad_numbers() {
       "drdHold", [](char id) { return drdHold(id); }, DHD_ERROR_NO_REGULATION);
   add(
       "drdWaitForTick", [](char id) { return drdWaitForTick(id); }, DHD_ERROR_NO_REGULATION);
+  for (const auto& [name, move] : std::map<const char*, int (*)(char)>{
+           {"drdMoveToRot", [](char id) { return drdMoveToRot(0, 0, 0, true, id); }},
+           {"drdTrackRot", [](char id) { return drdTrackRot(0, 0, 0, id); }},
+           {"drdMoveToGrip", [](char id) { return drdMoveToGrip(0, true, id); }},
+           {"drdTrackGrip", [](char id) { return drdTrackGrip(0, id); }},
+           {"dhdWristJointAnglesToJacobian",
+            [](char id) { return dhdWristJointAnglesToJacobian(0, 0, 0, nullptr, id); }}}) {
+    add(name, move, DHD_ERROR_NOT_AVAILABLE);
+  }
   add(
       "dhdGetWristJacobian", [](char id) { return dhdGetWristJacobian(nullptr, id); },
       DHD_ERROR_NOT_AVAILABLE);
@@ -212,6 +260,11 @@ std::vector<Call> calls_of_an_arm() {
   OF_ARM(drdMoveTo, number, true);
   OF_ARM(drdTrack, number);
   OF_ARM(drdSetForceAndTorqueAndGripperForce, number);
+  OF_ARM(drdSetForceAndWristJointTorquesAndGripperForce, number);
+  OF_ARM(dhdSetForceAndWristJointTorques, 1, 0, 0, 0, 0, 0);
+  OF_ARM(drdGetEncPGain);
+  OF_ARM(drdGetEncIGain);
+  OF_ARM(drdGetEncDGain);
   return calls;
 }
 

@@ -83,6 +83,8 @@ async def first_message():
         check(set(got["state"][angles]) == {"a0", "a1", "a2"}, angles)
     (grip,) = arm.first["wireless_verse_grip"]
     check(set(grip["state"]["buttons"]) == {"a", "b", "c"}, "no buttons")
+    check(grip["state"]["battery_level"] == 1, "no battery level")
+    check(grip["status"]["ready"] is True, "the grip is not ready")
     later = await arm.exchange({"session": {"configure": {"profile": {"name": "test:program"}}}})
     check("session_id" not in later and "config" not in later["inverse3"][0], "a later message has the full state")
     full = await arm.exchange({"session": {"force_render_full_state": {}}})

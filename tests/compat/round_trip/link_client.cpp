@@ -11,7 +11,6 @@
 #include "support/patient_clock.h"
 #include "thimble/driver/device.h"
 #include "thimble/scene/arm_file.h"
-#include "thimble/scene/device_settings.h"
 #include "vendors/dhd/dhd_link.h"
 #include "vendors/hd/hd_link.h"
 

@@ -14,7 +14,7 @@ awk 'BEGIN { for (i = 0; i <= 4000; ++i) { t = i / 10
 good='^[0-9]{3,} ticks here, 0 not there, 0 out of order; [0-9]{3,} ticks there with a force from here, [0-9]{3,} different, 0 from elsewhere$'
 for kind in dhd:omega3 hd:touch; do
   name=${kind%:*}
-  expect 0 'link_client .*(DHD|HDAPI).* [1-9]' "$thimble" exec --clock virtual --hand hand.txt \
+  expect 0 'link_client .*(DHD|DRD|HDAPI).* [1-9]' "$thimble" exec --clock virtual --hand hand.txt \
     --record $name.h5 "$client" $name "$source_dir/app/arms/${kind#*:}.yaml" $name.txt 10000
   # A Touch is calibrated first, in a separate run.
   [ ! -e $name-2.h5 ] || mv $name-2.h5 $name.h5

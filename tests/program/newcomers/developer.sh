@@ -30,3 +30,22 @@ share=$(pkg-config --variable=prefix thimble)/share
 export XDG_DATA_DIRS=$share:/usr/share
 see '^Force +[0-9.]+ N maximum' ./by_pkg_config
 see '6000 ticks of rubber' thimble export touch.h5 --csv touch.csv
+
+# A scene in code: the guide's lines in a program.
+says guide/scenes_in_code.md 'This page explains how a C++ program makes a scene without a YAML file.'
+{
+  echo '#include <cstdio>'
+  echo 'static int complain(const thimble::driver::Error& error);'
+  awk '/^```cpp$/ { inside = 1; next } /^```/ { if (inside) exit } inside' "$DOCUMENTS/guide/scenes_in_code.md" >lines
+  grep '^#include' lines
+  echo 'int main() {'
+  grep -v '^#include' lines
+  echo '  std::printf("%s\n", summary((*run)->figures()).c_str());'
+  echo '}'
+  echo 'int complain(const thimble::driver::Error& error) { std::puts(error.message.c_str()); return 2; }'
+} >desk.cpp
+# The header comes before the first use of its names.
+{ grep '^#include' desk.cpp; grep -v '^#include' desk.cpp; } >in_code.cpp
+c++ $(pkg-config --cflags thimble) -O0 in_code.cpp -o in_code $(pkg-config --libs thimble) 2>said ||
+  fail "a scene in code: $(cat said)"
+see '^Force +[0-9.]+ N maximum' ./in_code

@@ -22,6 +22,11 @@ says guide/own_arm.md 'They then print SIMULATED on the first and the last line,
 see '^encoder_sign' thimble calibrate --device sim --arm polhem
 see '^ok +watchdog' thimble feel-check --device sim --arm polhem
 
+# The messages of a board that a maker builds, drawn and decoded.
+says guide/own_board.md 'It draws both messages, so that you can compare them with your firmware byte by byte'
+see '\|encoder_1' thimble wire check reference_five_bar
+see 'the simulated arm reference_five_bar' thimble run disc --arm reference_five_bar --duration 1
+
 came=$(thimble run --list | awk '$1 == "polhem" { print $2 }')
 cp "$came" my_arm.yaml
 sed -i 's/^name: .*/name: my_arm/' my_arm.yaml

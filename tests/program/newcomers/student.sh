@@ -25,6 +25,37 @@ says guide/scenes.md 'thimble run my_ball.yaml'
 awk '/^```yaml$/ { inside = 1; next } /^```/ { if (inside) exit } inside' "$DOCUMENTS/guide/scenes.md" >my_ball.yaml
 see ': [1-9][0-9]* contacts?,' thimble run my_ball.yaml
 
+# A force by a formula, on the mesh that the student drew.
+says guide/index.md 'A mesh must be watertight: each edge joins two triangles.'
+begin=$SECONDS
+printf 'OFF\n4 4 0\n0 0 0\n60 0 0\n0 60 0\n0 0 60\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n' >my_part.off
+see 'watertight|closed|no fault' thimble mesh my_part.off
+says guide/effects.md 'A formula defines your own force, without C++.'
+cat >my_part.yaml <<'END'
+name: my_part
+arm: vintage_phantom
+duration: 2
+objects:
+  - name: part
+    mesh: my_part.off
+    size: 0.06
+    stiffness: 500
+    effects:
+      - law: "-b * speed"
+        direction: sliding
+        parameters:
+          - {name: b, value: 4, unit: N s/m, min: 0, max: 10}
+hand:
+  path:
+    - {t: 0, at: [0, 0, 0.06]}
+    - {t: 1, on: part, near: [0, 0, 0.03], press: 0.004}
+    - {t: 2, on: part, near: [0.01, 0.01, 0.02], press: 0.004}
+END
+see ': [1-9][0-9]* contacts?,' thimble run my_part.yaml
+echo "  From a mesh to its first touch: $((SECONDS - begin)) s of computing."
+sed 's/speed"/speed + b"/' my_part.yaml >wrong_law.yaml
+refused 'wrong_law\.yaml:[0-9]+' thimble run wrong_law.yaml
+
 says guide/recording.md 'The table has one line per tick, in SI units. Its header names columns and units.'
 see '9000 ticks of my_can' thimble export can.h5 --csv can.csv
 if has gnuplot; then

@@ -24,8 +24,29 @@ else
   echo "  NOT TESTED: the page; libjs-three and libjs-dygraphs are missing."
 fi
 
+# An arm with two motors, and a surface that feels harder than its spring.
+says guide/effects.md '`thimble study accuracy --axis hardness` shows how much harder it makes a wall of a given stiffness'
+see 'the simulated arm haply_2diy_3' thimble run disc --arm haply_2diy_3 --duration 1
+cat >tapped.yaml <<'END'
+name: tapped
+arm: vintage_phantom
+duration: 1
+objects:
+  - name: ball
+    sphere: {radius: 0.025}
+    position: [0, 0, -0.025]
+    stiffness: 600
+    effects:
+      - {contact: transient, gain: 12, frequency: 150, decay: 0.01}
+hand:
+  path:
+    - {t: 0, at: [0, 0, 0.01]}
+    - {t: 0.3, on: ball, near: [0, 0, 0], press: 0.003}
+END
+see '^Force' thimble run tapped.yaml
+
 says guide/commands.md 'draws a moment of a scene without a screen'
-if ! thimble shot clay --at 2 --size 160x120 --out clay.png >said 2>&1; then
+if ! thimble shot clay --at 2 --size 160x120 --output clay.png >said 2>&1; then
   grep -q 'No OpenGL' said || fail "$(cat said)"
   echo "  NOT TESTED: pictures. $(cat said)"
   exit 0

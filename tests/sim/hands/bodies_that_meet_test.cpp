@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
@@ -10,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "body/shape/body_shape.h"
 #include "setup.h"
 #include "support/run_hash.h"
 #include "support/shipped_scenes.h"
@@ -114,6 +116,55 @@ TEST(BodiesThatMeet, ABlockPushedFastLeavesTheStack) {
   const auto session = run_for("blocks", 5);
   EXPECT_GT(pose_of(*session, "block_3").first.norm(), 0.01);
   EXPECT_LT(pose_of(*session, "block_1").first.norm(), 0.01);
+}
+
+/// Returns how far the axis of a can that stood is from the vertical, rad.
+double tilt_of(const session::Session& session, const std::string& can) {
+  return std::acos(std::min(1.0, (pose_of(session, can).second * Vector3d::UnitZ()).z()));
+}
+
+/// Returns how often the wall of an object snapped.
+std::int64_t snaps_of(const session::Session& session, std::size_t object) {
+  return session.setup().objects().touch().object(object).shape()->snap()->snaps();
+}
+
+TEST(Cans, RunBitForBitAgainUntilBothHaveFallen) {
+  const auto first = run_for("cans", 8), again = run_for("cans", 8);
+  EXPECT_EQ(hash_of(*first), hash_of(*again));
+  EXPECT_EQ(pose_of(*first, "empty").first, pose_of(*again, "empty").first);
+}
+
+TEST(Cans, StandWhileTheFullOneIsStrokedAndPressed) {
+  const auto session = run_for("cans", 3.4);
+  for (const char* can : {"full", "empty"}) {
+    EXPECT_LT(tilt_of(*session, can), 0.01) << can;
+    EXPECT_LT(pose_of(*session, can).first.norm(), 1e-3) << can;
+  }
+}
+
+TEST(Cans, TheWallOfThePressedOneSnaps) {
+  EXPECT_EQ(snaps_of(*run_for("cans", 1.9), 1), 0) << "it yields to a stroke";
+  EXPECT_EQ(snaps_of(*run_for("cans", 3.4), 1), 1);
+}
+
+TEST(Cans, TheFullOneFallsAndKnocksOverTheEmptyOne) {
+  const auto session = run_for("cans", 8);
+  EXPECT_GT(tilt_of(*session, "full"), 1.2);
+  EXPECT_GT(tilt_of(*session, "empty"), 1.2);
+  EXPECT_EQ(snaps_of(*session, 2), 0) << "no hand touched it";
+}
+
+// Its surface at the print has moved in by several millimetres, and moves with the can.
+TEST(Cans, TheDentStaysInTheFallenCan) {
+  const auto session = run_for("cans", 8);
+  const auto bent = session->setup().objects().mesh_bent(1);
+  const auto& first = session->setup().objects().mesh_W(1);
+  double deepest = 0;
+  for (std::size_t v = 0; v < first.vertices.size(); ++v) {
+    deepest = std::max(deepest, (bent.vertices[v] - first.vertices[v]).norm());
+  }
+  EXPECT_GT(deepest, 0.004);
+  EXPECT_LT(deepest, 0.012);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Arms whose geometry and motors are code: a Falcon behind its converter, and the Polhem's linkage.
+// Arms of other builds than the serial ones: a Falcon behind its converter, the Polhem's linkage,
+// and arms with one or two motors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,8 +21,8 @@
 #include "support/random.h"
 #include "thimble/driver/device.h"
 #include "thimble/driver/wire_link.h"
+#include "thimble/scene/arm_file.h"
 #include "thimble/scene/arm_simulation.h"
-#include "thimble/scene/device_settings.h"
 #include "usb/simulated_falcon.h"
 #include "yaml/yaml_reader.h"
 
@@ -104,7 +105,9 @@ struct Scores {
     mass.add(constants.mass, plant.mass);
     coulomb.add(constants.coulomb, plant.coulomb);
     delay.add(constants.delay, true_delay, false);
-    for (std::size_t i = 0; i < 3; ++i) gain.add(constants.gain[i], arm.gain[i]);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(arm.file.motors()); ++i) {
+      gain.add(constants.gain[i], arm.gain[i]);
+    }
     held_weights += constants.weight.holds(arm.weight) ? 1 : 0;
     held_viscous += constants.viscous.holds(plant.viscous) ? 1 : 0;
   }
@@ -124,7 +127,8 @@ struct Scores {
   }
 };
 
-void find_hidden_arms(const char* name, double seconds) {
+/// `max_force`: of the motion, N; empty: that of the command.
+void find_hidden_arms(const char* name, double seconds, double max_force = kIdentifyForceMax) {
   Scores scores;
   const int arms = long_form() ? 20 : 1;
   for (int k = 0; k < arms; ++k) {
@@ -134,8 +138,8 @@ void find_hidden_arms(const char* name, double seconds) {
     const double delay = arm.file.is<driver::DeltaArm>()
                              ? delay_of_bus(arm.file)
                              : 1e-9 * static_cast<double>(wire.delay_in_ns + wire.delay_out_ns);
-    const auto found =
-        identified(arm, {.seconds = seconds, .known_mass = kKnownMass, .seed = seed});
+    const auto found = identified(
+        arm, {.seconds = seconds, .known_mass = kKnownMass, .max_force = max_force, .seed = seed});
     ASSERT_TRUE(found.ok()) << name << ' ' << seed << ": " << found.error().message;
     EXPECT_TRUE(found->against.empty()) << name << ' ' << seed << ": " << found->against.front();
     EXPECT_FALSE(found->constants.cables);
@@ -152,24 +156,41 @@ TEST(IdentifyBuilds, FindsTheConstantsOfHiddenPolhems) {
   find_hidden_arms("polhem", long_form() ? 30 : 10);
 }
 
-TEST(IdentifyBuilds, NamesAReversedOrDeadMotorOfAFalcon) {
-  for (int motor = 0; motor < 3; ++motor) {
+TEST(IdentifyBuilds, FindsTheConstantsOfHiddenFiveBars) {
+  find_hidden_arms("five_bar", long_form() ? 30 : 10);
+}
+
+TEST(IdentifyBuilds, FindsTheConstantsOfHiddenPaddles) {
+  // A paddle has more friction at the tip than the command's force moves well.
+  find_hidden_arms("hapkit", long_form() ? 30 : 10, 2);
+}
+
+void expect_wrong_motor_named(const char* name, int motors) {
+  for (int motor = 0; motor < motors; ++motor) {
     for (const double gain : {-1.0, 0.0}) {
-      HiddenArm arm = hidden_arm_of("falcon", 7);
+      HiddenArm arm = hidden_arm_of(name, 7);
       arm.file.simulated.firmware.wiring.motor_gain[motor] = gain;
       const auto found = identified(arm, {.seconds = 10});
       ASSERT_FALSE(found.ok());
-      const std::string name = "Motor " + std::to_string(motor + 1);
+      const std::string which = "Motor " + std::to_string(motor + 1);
       EXPECT_EQ(found.error().message.find(
-                    name + (gain < 0 ? " pulls against its encoder" : " moved its joint by")),
+                    which + (gain < 0 ? " pulls against its encoder" : " moved its joint by")),
                 0U)
           << found.error().message;
     }
   }
 }
 
+TEST(IdentifyBuilds, NamesAReversedOrDeadMotorOfAFiveBar) {
+  expect_wrong_motor_named("five_bar", 2);
+}
+
+TEST(IdentifyBuilds, NamesAReversedOrDeadMotorOfAFalcon) {
+  expect_wrong_motor_named("falcon", 3);
+}
+
 TEST(IdentifyBuilds, WritesAFileThatMakesTheHiddenArm) {
-  for (const char* name : {"falcon", "polhem"}) {
+  for (const char* name : {"falcon", "polhem", "five_bar", "hapkit"}) {
     ArmConstants found;
     found.mass = {0.2, 0.001};
     found.viscous = {0.01, 0.001};
@@ -191,7 +212,7 @@ TEST(IdentifyBuilds, WritesAFileThatMakesTheHiddenArm) {
       EXPECT_EQ(after->simulated.plant.mass, 0.2);
       EXPECT_NEAR(after->simulated.weight_B.norm(), 0.02, 1e-9);
       EXPECT_EQ(after->heat.named(), before->heat.named());
-      for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(before->motors()); ++i) {
         const double gain = found.gain[i].value * (round == 0 ? 1 : found.gain[i].value);
         EXPECT_NEAR(after->model.drives[i].torque_constant,
                     gain * before->model.drives[i].torque_constant, 1e-6);

@@ -16,6 +16,7 @@
 #include "support/scratch.h"
 #include "twin/compare_twin.h"
 #include "twin/replay.h"
+#include "twin/twin_constants.h"
 #include "twin/twin_files.h"
 #include "twin/twin_motion.h"
 
@@ -236,6 +237,27 @@ TEST(Twin, PolhemIsReproducedEquallyWell) {
   file.simulated.plant.mass *= 1.3;
   const TwinComparison heavier = compared(recording, file);
   EXPECT_EQ(heavier.remedies.front().key, "simulation.tip.mass");
+}
+
+TEST(Twin, ListsConstantsThatAnArmOfFewMotorsHas) {
+  const auto keys_of = [](const scene::ArmFile& file) {
+    std::string keys;
+    for (const TwinConstant& one : twin_constants(file)) keys += one.key + "\n";
+    return keys;
+  };
+  scene::ArmFile paddle = scene::load_arm("hapkit").value();
+  paddle.simulated.drive_train.coulomb = {1e-3, 0, 0};
+  const std::string keys = keys_of(paddle);
+  EXPECT_NE(keys.find("torque_constant[1]"), std::string::npos) << keys;
+  EXPECT_EQ(keys.find("torque_constant[2]"), std::string::npos) << keys;
+  EXPECT_NE(keys.find("drive_train.coulomb[1]"), std::string::npos) << keys;
+  EXPECT_NE(keys.find("tip.weight"), std::string::npos) << keys;
+  // On a level line nothing shows the weight.
+  paddle.R_WB.col(0).swap(paddle.R_WB.col(2));
+  EXPECT_EQ(keys_of(paddle).find("tip.weight"), std::string::npos);
+  const std::string planar = keys_of(scene::load_arm("five_bar").value());
+  EXPECT_NE(planar.find("torque_constant[2]"), std::string::npos) << planar;
+  EXPECT_EQ(planar.find("torque_constant[3]"), std::string::npos) << planar;
 }
 
 TEST(Twin, RefusesUnsuitableRecordings) {

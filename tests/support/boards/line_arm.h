@@ -9,32 +9,20 @@
 
 #include "arms/hfab/hfab_line.h"
 #include "arms/hfab/hfab_wire.h"
-#include "simulated_arm.h"
-#include "thimble/device_sim/usb/usb_arm.h"
+#include "support/boards/serial_board.h"
 #include "transports/frame_finder.h"
-#include "usb/setup_packet.h"
-#include "usb/usb_description.h"
 
 namespace thimble::support {
 
 /// A simulated arm that exchanges text lines over USB serial. The board sends nothing on its own
 /// and answers every message with its counters. The answer to an invalid message repeats the last
 /// counters, with the error of the published firmware.
-class LineArm final : public device_sim::usb::UsbArm {
+class LineArm final : public SerialBoard {
  public:
-  static constexpr std::uint8_t kIn = 0x81, kOut = 0x02;
-
   /// Takes an arm whose firmware uses text lines.
-  explicit LineArm(device_sim::SimulatedArm arm) : arm_(std::move(arm)) {}
+  explicit LineArm(device_sim::SimulatedArm arm) : SerialBoard(std::move(arm)) {}
 
-  const device_sim::usb::UsbDescription& description() const noexcept override {
-    return description_;
-  }
   void advance_to(std::int64_t time_ns) noexcept override { arm_.advance_to(time_ns); }
-  device_sim::usb::PacketResult control(const device_sim::usb::SetupPacket&,
-                                        std::span<std::byte>) noexcept override {
-    return {device_sim::usb::Answer::kDone, 0};
-  }
   device_sim::usb::PacketResult in(std::uint8_t, std::span<std::byte> packet) noexcept override {
     if (waiting_ == 0) return {device_sim::usb::Answer::kNak, 0};
     const std::size_t size = std::min({waiting_, packet.size(), kPacketMax});
@@ -53,19 +41,6 @@ class LineArm final : public device_sim::usb::UsbArm {
       answer(std::span<const std::byte>(line).first(size));
     }
     return {device_sim::usb::Answer::kDone, packet.size()};
-  }
-  device_sim::usb::ArmTruth truth() const noexcept override {
-    device_sim::usb::ArmTruth truth;
-    truth.currents = arm_.plant().currents();
-    truth.p_BT = arm_.plant().p_BT();
-    truth.motors_on = arm_.firmware().motors_on();
-    return truth;
-  }
-  void lead_hand(const Eigen::Vector3d& p_BH) noexcept override { arm_.hand().lead(p_BH); }
-  void hold_tip(bool held) noexcept override { arm_.hold_tip(held); }
-  void restart_board() noexcept override { arm_.restart_board(); }
-  driver::Result<void> fix_mass(double mass, const Eigen::Vector3d& gravity_B) override {
-    return arm_.fix_mass(mass, gravity_B);
   }
 
  private:
@@ -88,8 +63,6 @@ class LineArm final : public device_sim::usb::UsbArm {
     waiting_ += size;
   }
 
-  device_sim::usb::UsbDescription description_;
-  device_sim::SimulatedArm arm_;
   driver::FrameFinder heard_{driver::hfab::kLineFraming};
   driver::hfab::ArmLine answer_;
   std::array<std::byte, 4 * driver::hfab::kLineCapacity> said_{};

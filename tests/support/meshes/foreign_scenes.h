@@ -15,6 +15,7 @@
 
 #include "mesh/contact_mesh.h"
 #include "mesh/overlapping_parts.h"
+#include "support/meshes/solid_triangles.h"
 #include "support/random.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/repair_mesh.h"
@@ -27,6 +28,7 @@ struct ForeignMesh {
   render::TriangleMesh mesh;
   bool repaired = false;  ///< Accepted with `repair: true` only.
   std::size_t parts = 1;  ///< Parts of the mesh that are separate solids.
+  bool inverted = false;  ///< Has faces with the outside behind them.
 };
 
 /// All meshes of a folder and of the folders in it.
@@ -73,6 +75,7 @@ inline ForeignMeshes read_foreign_meshes(const std::filesystem::path& folder,
         continue;
       }
     }
+    one.inverted = SolidTriangles({one.mesh}).has_inverted_faces();
     one.parts = std::max<std::size_t>(1, render::overlapping_parts(one.mesh).size());
     all.meshes.push_back(std::move(one));
   }

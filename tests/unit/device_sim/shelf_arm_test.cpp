@@ -1,7 +1,9 @@
 // A plugged arm with constants other than the default ones, and commands to the hand on it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -65,6 +67,53 @@ TEST(ShelfArm, UsesTheConstantsOfItsFile) {
   }
 }
 
+/// The third generation of the Haply 2DIY, in its home pose.
+driver::ArmModel five_bar() {
+  driver::ArmModel model;
+  model.geometry = driver::FiveBarArm{
+      .base = 0.038, .crank_1 = 0.07, .crank_2 = 0.07, .distal_1 = 0.09, .distal_2 = 0.09};
+  const driver::MotorDrive drive{.ratio = 1, .torque_constant = 0.123, .current_max = 1};
+  model.drives = {drive, drive, driver::absent_motor()};
+  model.encoders = {driver::JointEncoder{.counts_per_motor_turn = 4880, .home_counts = 2277},
+                    driver::JointEncoder{.counts_per_motor_turn = 4880, .home_counts = 163},
+                    driver::absent_encoder()};
+  return model;
+}
+
+/// A Hapkit, in its home pose.
+driver::ArmModel paddle() {
+  driver::ArmModel model;
+  model.geometry = driver::PaddleArm{.handle = 0.09};
+  model.drives = {driver::MotorDrive{.ratio = 14.8, .torque_constant = 0.03, .current_max = 1},
+                  driver::absent_motor(), driver::absent_motor()};
+  model.encoders = {driver::JointEncoder{.counts_per_motor_turn = 4096}, driver::absent_encoder(),
+                    driver::absent_encoder()};
+  return model;
+}
+
+TEST(ShelfArm, FiveBarAndPaddleMoveByTheirMotorsOnAHidBoard) {
+  for (const driver::ArmModel& model : {five_bar(), paddle()}) {
+    for (const char* board : {"polhem", "polhem-64"}) {
+      const double whole = driven(*plugged(board, shelf_arm(model, 1), HandMotion::kNone));
+      const double half = driven(*plugged(board, shelf_arm(model, 0.5), HandMotion::kNone));
+      EXPECT_GT(whole, 0.001) << board;
+      EXPECT_NEAR(half / whole, 0.5, 0.03) << board;
+    }
+  }
+}
+
+TEST(ShelfArm, HandOfAFiveBarStrokesInItsPlane) {
+  const auto arm = plugged("polhem", shelf_arm(five_bar(), 1), HandMotion::kStroke);
+  const Eigen::Vector3d begin = arm->truth().p_BT;
+  double farthest = 0;
+  for (int ms = 1; ms <= 3000; ++ms) {
+    arm->advance_to(ms * std::int64_t{1'000'000});
+    EXPECT_EQ(arm->truth().p_BT.z(), 0);
+    farthest = std::max(farthest, (arm->truth().p_BT - begin).norm());
+  }
+  EXPECT_GT(farthest, 0.01);
+}
+
 TEST(ShelfArm, IsRefusedOnABoardOfAnotherGeometry) {
   const auto of = [](const char* name, const driver::ArmModel& model) {
     return make_usb_arm(name, {.serial = {}, .firmware = {}, .arm = shelf_arm(model, 1)});
@@ -73,6 +122,7 @@ TEST(ShelfArm, IsRefusedOnABoardOfAnotherGeometry) {
   EXPECT_TRUE(refuses(of("polhem", woody), "does not match the geometry"));
   EXPECT_TRUE(refuses(of("polhem-64", woody), "does not match the geometry"));
   EXPECT_TRUE(refuses(of("falcon", woody), "does not match the geometry"));
+  EXPECT_TRUE(refuses(of("woodenhaptics", five_bar()), "does not match the geometry"));
   EXPECT_TRUE(refuses(of("woodenhaptics", arm_model(driver::falcon::falcon_model())),
                       "does not match the geometry"));
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "board_identity.h"
 #include "support/mock/fake_usb.h"
 
 namespace thimble::driver {
@@ -94,7 +95,10 @@ TEST(Discovery, IdentifiesAnArmOnlyByItsOwnProperties) {
       {"16c0", "048a", "Teensy MIDI", 0, true, Certainty::kUnknown, BoardKind::kTextLines},
       // The product string names the arm.
       {"1234", "0006", "Polhem", 14, false, Certainty::kKnown, BoardKind::kMbedHid14},
-      {"16c0", "0483", "Haptikfabriken arm", 0, true, Certainty::kKnown, BoardKind::kTextLines},
+      {"16c0", "0483", "haptikfabriken", 0, true, Certainty::kKnown, BoardKind::kTextLines},
+      // A part of a product string proves nothing.
+      {"16c0", "0483", "Haptikfabriken arm", 0, true, Certainty::kUnknown, BoardKind::kTextLines},
+      {"1234", "0006", "Not a Polhem", 14, false, Certainty::kUnknown, BoardKind::kMbedHid14},
       // Another manufacturer's arm, and properties that no arm has.
       {"16c0", "0483", "Haply inverse3", 0, true, Certainty::kUnsupported, BoardKind::kOther},
       {"16c0", "0483", "Haply robot", 0, true, Certainty::kUnsupported, BoardKind::kOther},
@@ -187,6 +191,18 @@ TEST(Discovery, ReportsAnArmWithoutNodeOrAccess) {
   ASSERT_EQ(arms->size(), 1u);
   EXPECT_EQ(arms->front().node, "");
   EXPECT_FALSE(arms->front().accessible);
+}
+
+TEST(Discovery, StringsOfBoardsAndConvertersNameNoArm) {
+  for (const char* common :
+       {"", "USB Serial", "Dual Serial", "USB JTAG/serial debug unit", "Board in FS mode",
+        "FT231X USB UART", "CP2104 USB to UART Bridge Controller", "PicoArduino", "Arduino Due",
+        "STM32 Virtual ComPort", "Teensyduino RawHID", "TinyUSB Device", "USB2.0-Serial"}) {
+    EXPECT_TRUE(is_common_product(common)) << common;
+  }
+  for (const char* own : {"Thimble arm: bench 3", "Pico haptic arm", "Pantograph of room 12"}) {
+    EXPECT_FALSE(is_common_product(own)) << own;
+  }
 }
 
 TEST(Discovery, MissingUsbIsAnError) {

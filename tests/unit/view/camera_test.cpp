@@ -6,6 +6,7 @@
 
 #include "support/meshes/shapes.h"
 #include "support/random.h"
+#include "unit/view/any_camera.h"
 
 namespace thimble::view {
 namespace {
@@ -13,19 +14,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-Camera any_camera(support::Random& random) {
-  Camera camera;
-  camera.p_WTarget = random.in_box(0.2);
-  camera.yaw = random.uniform(-3, 3);
-  camera.pitch = random.uniform(-1.4, 1.4);
-  camera.distance = random.uniform(0.05, 2);
-  return camera;
-}
-
 TEST(Camera, ProjectionAndRaysAgree) {
   support::Random random(3);
   for (int i = 0; i < 1000; ++i) {
-    const Camera camera = any_camera(random);
+    const Camera camera = any_camera(random, 0.2, 2);
     const double x = random.uniform(0, 800);
     const double y = random.uniform(0, 500);
     const Vector3d p = camera.p_WEye() + random.uniform(0.1, 2) * camera.ray(x, y, 800, 500);
@@ -64,6 +56,23 @@ TEST(Camera, FramesAllThatMustBeSeenFromAnySide) {
       }
     }
     EXPECT_LT(nearest_rim, 0.2 * 500);  // and not from a large distance
+  }
+}
+
+TEST(Camera, ShowsTwoArmsNextToEachOther) {
+  for (int i = 0; i < 24; ++i) {
+    const double way = 0.3 * i;
+    DrawnScene scene;
+    scene.objects.push_back({.name = "beam", .mesh = support::box({0.05, 0.05, 0.01})});
+    DrawnMoment moment;
+    moment.tick.p_WT = {0.05 * std::cos(way), 0.05 * std::sin(way), 0.01};
+    moment.tick.in_contact = true;
+    moment.tick.n_W = {std::cos(way), std::sin(way), 0};  // along the line of the tips
+    DrawnArm& other = moment.others.emplace_back();
+    other.tick.p_WT = {-0.05 * std::cos(way), -0.05 * std::sin(way), 0.02};
+    const Camera camera = frame(scene, moment, 1.5);
+    const Vector3d line(std::cos(way), std::sin(way), 0);
+    EXPECT_GT(std::abs(line.dot(camera.right())), 0.9) << way;
   }
 }
 

@@ -94,6 +94,21 @@ TEST_F(PlotPanelUsed, EndsZoomOfForgottenTime) {
   EXPECT_FALSE(panel.is_zoomed());
 }
 
+TEST_F(PlotPanelUsed, ShowsTheWholeDurationOfARun) {
+  time = {.looked = std::nullopt, .recorded = false, .duration = 25};
+  EXPECT_EQ(range().begin, 0);
+  EXPECT_EQ(range().end, 25);
+  time.looked = 1.5;  // and the same while looking back
+  EXPECT_EQ(range().end, 25);
+}
+
+TEST_F(PlotPanelUsed, FollowsRunThatIsLongerThanKept) {
+  time = {.looked = std::nullopt, .recorded = false, .duration = 3600};
+  EXPECT_NEAR(range().begin, 10 - Plots::kShownSeconds, 1e-9);
+  time.duration = 9;  // it was longer than planned
+  EXPECT_NEAR(range().begin, 10 - Plots::kShownSeconds, 1e-9);
+}
+
 TEST_F(PlotPanelUsed, FollowsRunUnlessLookingBack) {
   time = {.looked = std::nullopt, .recorded = false};
   EXPECT_NEAR(range().begin, 10 - Plots::kShownSeconds, 1e-9);

@@ -148,6 +148,28 @@ TEST(RecordingView, ShowsBodiesWhereTheyWere) {
   expect_as_seen("floating_block", {0.4, 1.2, 2.0});
 }
 
+TEST(RecordingView, ShowsAllBodiesThatMeet) {
+  const std::vector<double> times = {0.4, 1.6, 2.4};
+  const Seen seen = see("dominoes", times);
+  ASSERT_EQ(seen.moments.size(), 3U);
+  for (std::size_t domino = 1; domino <= 8; ++domino) {  // after the table
+    EXPECT_NE(seen.moments[2].poses.at(domino).p_WB, seen.moments[0].poses.at(domino).p_WB)
+        << domino;
+  }
+  expect_as_seen("dominoes", times);
+}
+
+TEST(RecordingView, ShowsTheShapesThatCollide) {
+  const Seen seen = see("cans", {0.1});
+  ASSERT_NE(seen.recorded, nullptr);
+  const auto& objects = seen.recorded->scene().objects;
+  EXPECT_TRUE(objects[0].collider.triangles.empty()) << "a plane has no end";
+  for (const std::size_t can : {1, 2}) {
+    EXPECT_GT(objects[can].collider.triangles.size(), 50U) << can;
+    EXPECT_LT(objects[can].collider.triangles.size(), objects[can].mesh.triangles.size());
+  }
+}
+
 TEST(RecordingView, ShowsSeveralArms) {
   expect_as_seen("two_hands", {0.2, 0.7, 1.2}, 1e-4);  // its motion in a tick
 }

@@ -95,5 +95,41 @@ TEST(RunButtons, AreDrawnForAnyRunAndExplainWhyPhysicalArmRefuses) {
   ImGui::DestroyContext();
 }
 
+/// A run that has ended, on an arm of this device.
+struct EndedRun {
+  explicit EndedRun(const char* device) {
+    session::SharedScene scene;
+    scene.period_ns = 1'000'000;
+    scene.arms.front().device = device;
+    scene.paced = scene.restarts = true;
+    run = session::SharedRun::create("", scene, 8).value();
+    reader = session::SharedReader::over(run->memory().again().value()).value();
+    run->set_state(session::RunState::kEnded);
+  }
+  std::unique_ptr<session::SharedRun> run;
+  std::unique_ptr<session::SharedReader> reader;
+};
+
+TEST(RunButtons, EndedRunIsStartedAgainIfTheWindowCan) {
+  const EndedRun ended("sim");
+  RunButtons buttons;
+  buttons.take_key('B', false, false, *ended.reader);
+  EXPECT_FALSE(buttons.take_run_again());
+  buttons.set_can_run_again(true);
+  buttons.take_key('B', false, false, *ended.reader);
+  EXPECT_TRUE(buttons.take_run_again());
+  EXPECT_FALSE(buttons.take_run_again()) << "asked once";
+}
+
+TEST(RunButtons, EndedRunOfARealArmNamesTheTerminal) {
+  const EndedRun ended("polhem_1");
+  RunButtons buttons;
+  buttons.set_can_run_again(true);
+  EXPECT_FALSE(buttons.offers_run_again(*ended.reader));
+  buttons.take_key('B', false, false, *ended.reader);
+  EXPECT_FALSE(buttons.take_run_again());
+  EXPECT_NE(buttons.take_message().find("started in a terminal"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace thimble::view

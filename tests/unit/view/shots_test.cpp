@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gl_or_skip.h"
@@ -65,8 +66,8 @@ ShotPainter painter_of(const DrawnScene& scene, const ShotChoice& choice) {
 /// Returns the second at which a scene is drawn: in contact, if the default is not.
 double second_of(const std::string& scene) {
   static const std::map<std::string, double> others = {
-      {"clay", 3.008}, {"clay_tablet", 5.008}, {"tin_can", 4.208},  {"held_block", 2.4},
-      {"box", 2.208},  {"charges", 3.008},     {"two_hands", 3.008}};
+      {"clay", 3.008}, {"clay_tablet", 5.008}, {"tin_can", 4.208},   {"held_block", 2.4},
+      {"box", 2.208},  {"charges", 3.008},     {"two_hands", 3.008}, {"cans", 5.0}};
   const auto found = others.find(scene);
   return found == others.end() ? 1.6 : found->second;
 }
@@ -131,6 +132,23 @@ TEST(Shots, EveryShippedSceneMatchesStoredShot) {
              EXPECT_GT(difference(picture, as_at_first).mean, 0)
                  << name << " without its shape is not detected";
            }
+           // Of several bodies that moved, each is detected.
+           const auto moved = [](const render::BodyPose& pose) {
+             return std::abs(pose.p_WB[0]) + std::abs(pose.p_WB[1]) + std::abs(pose.p_WB[2]) >
+                    0.004;
+           };
+           if (std::count_if(moment.poses.begin(), moment.poses.end(), moved) > 1) {
+             ShotChoice one_body = small_choice();
+             one_body.camera = painter.camera();
+             DrawnMoment first_only = moment;
+             bool first = true;
+             for (render::BodyPose& pose : first_only.poses) {
+               if (moved(pose) && !std::exchange(first, false)) pose = {};
+             }
+             EXPECT_FALSE(
+                 alike(difference(*stored, painter_of(drawn, one_body).paint(first_only, plots))))
+                 << name << " with one body only is not detected";
+           }
            const bool solid =
                std::any_of(drawn.objects.begin(), drawn.objects.end(),
                            [](const auto& o) { return !o.mesh.triangles.empty() && !o.endless; });
@@ -148,12 +166,12 @@ TEST(Shots, EveryShippedSceneMatchesStoredShot) {
 /// A picture with marks, as it is stored.
 struct MarkedShot {
   const char* name;
-  const char* scene;
+  const char* scene;  ///< In app/scenes, or in tests/data/scenes.
   double second;
   void (*choose)(PaintChoice& paint);
 };
 
-TEST(Shots, FieldsTrailNormalAndTexturesMatchStoredShots) {
+TEST(Shots, FieldsTrailTexturesAndCollidersMatchStoredShots) {
   const auto context = support::open_gl();
   if (!context) GTEST_SKIP() << "no OpenGL";
   const MarkedShot shots[] = {
@@ -163,15 +181,23 @@ TEST(Shots, FieldsTrailNormalAndTexturesMatchStoredShots) {
          paint.theme = Theme::kDark;
        }},
       {"charges_trail", "charges", 3.008, [](PaintChoice& paint) { paint.trail = true; }},
-      {"sandpaper_surfaces", "sandpaper", 2.0, [](PaintChoice& paint) {
+      {"sandpaper_surfaces", "sandpaper", 2.0,
+       [](PaintChoice& paint) {
          paint.surfaces = true;
          paint.marks.contact = true;
+       }},
+      {"colliders", "colliders", 0.3, [](PaintChoice& paint) { paint.colliders = true; }},
+      {"cans_colliders", "cans", 5.0, [](PaintChoice& paint) {
+         paint.colliders = true;
+         paint.theme = Theme::kDark;
        }}};
   for (const MarkedShot& shot : shots) {
     const fs::path stored_file =
         fs::path(THIMBLE_TEST_DATA) / "shots" / (std::string(shot.name) + ".png");
-    play(fs::path(THIMBLE_SOURCE_DIR) / "app/scenes" / (std::string(shot.scene) + ".yaml"),
-         shot.second, [&](const DrawnScene& drawn, DrawnMoment& moment, const Plots& plots) {
+    const std::string file = std::string(shot.scene) + ".yaml";
+    const fs::path shipped = fs::path(THIMBLE_SOURCE_DIR) / "app/scenes" / file;
+    play(fs::exists(shipped) ? shipped : fs::path(THIMBLE_TEST_DATA) / "scenes" / file, shot.second,
+         [&](const DrawnScene& drawn, DrawnMoment& moment, const Plots& plots) {
            ShotChoice choice = small_choice();
            choice.paint.marks.arm = false;
            ShotPainter without = painter_of(drawn, choice);

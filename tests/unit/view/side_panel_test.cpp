@@ -5,6 +5,7 @@
 #include <imgui_internal.h>
 
 #include <cmath>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -156,6 +157,107 @@ TEST_F(SidePanel, HelpStatesWhetherClosingEndsTheRun) {
   EXPECT_EQ(leading.find("The run continues"), std::string::npos) << leading;
   EXPECT_NE(leading.find("Closing ends the run: this window moves its hand."), std::string::npos)
       << leading;
+}
+
+TEST_F(SidePanel, HelpListsEachKeyOnce) {
+  for (int which = 0; which < 8; ++which) {
+    ViewNotes notes;
+    notes.recording = (which & 1) != 0;
+    notes.leads = !notes.recording && (which & 2) != 0;
+    notes.holds_key = !notes.recording && (which & 4) != 0;
+    std::set<std::string> seen;
+    for (const RunKey& one : listed_keys(notes)) {
+      std::string key = one.key;
+      if (key.ends_with(" held")) key.resize(key.size() - 5);
+      EXPECT_TRUE(seen.insert(key).second) << which << ": " << key;
+    }
+    EXPECT_TRUE(seen.contains("space")) << which;
+    EXPECT_TRUE(seen.contains(", .")) << which;
+    EXPECT_EQ(seen.contains("B"), !notes.recording);
+    EXPECT_EQ(seen.contains("H"), notes.leads);
+  }
+}
+
+/// Draws notices into a window with a scene part, and returns the box of a name.
+ScreenPart box_of(const char* name, const ViewNotes& notes, bool help, const ImVec2& window,
+                  const ScreenPart& part) {
+  set_text_style(1, Theme::kLight);
+  ImGuiIO& io = ImGui::GetIO();
+  unsigned char* pixels = nullptr;
+  int wide = 0;
+  int high = 0;
+  io.Fonts->GetTexDataAsRGBA32(&pixels, &wide, &high);
+  io.DisplaySize = window;
+  ViewChoice choice;
+  choice.help = help;
+  for (int frame = 0; frame < 4; ++frame) {
+    io.DeltaTime = 0.02F;
+    ImGui::NewFrame();
+    draw_notices(part, notes, choice);
+    ImGui::Render();
+  }
+  const ImGuiWindow* box = ImGui::FindWindowByName(name);
+  return {box->Pos.x, box->Pos.y, box->Size.x, box->Size.y};
+}
+
+TEST_F(SidePanel, NoticeLeavesTheLegendVisible) {
+  ViewNotes notes;
+  notes.notice =
+      "The run has ended. The next one named two_hands_and_more is shown when it starts.";
+  for (const float width : {320.0F, 500.0F, 900.0F, 1800.0F}) {
+    for (const float legend : {0.0F, 150.0F, 300.0F}) {
+      notes.legend = {0, 0, legend, legend > 0 ? 60.0F : 0.0F};
+      const ScreenPart box = box_of("notice", notes, false, {width + 300, 600}, {0, 0, width, 600});
+      EXPECT_TRUE(box.x >= legend || box.y >= notes.legend.height) << width << ", " << legend;
+      EXPECT_GE(box.x, 0) << width << ", " << legend;
+      EXPECT_LE(box.x + box.width, width) << width << ", " << legend;
+    }
+  }
+}
+
+TEST_F(SidePanel, HelpFitsTheWindow) {
+  ViewNotes notes;
+  notes.leads = true;
+  for (const auto& [width, height] : {std::pair{700.0F, 420.0F}, {960.0F, 640.0F}}) {
+    const ScreenPart box =
+        box_of("help", notes, true, {width, height}, {0, 0, width - 350, height - 40});
+    EXPECT_GE(box.x, 0) << width;
+    EXPECT_LE(box.x + box.width, width) << width;
+    EXPECT_GE(box.y, 0) << width;
+    EXPECT_LE(box.y + box.height, height) << width;
+  }
+}
+
+TEST_F(SidePanel, ManyKnobsScroll) {
+  set_text_style(1, Theme::kLight);
+  ImGuiIO& io = ImGui::GetIO();
+  unsigned char* pixels = nullptr;
+  int wide = 0;
+  int high = 0;
+  io.Fonts->GetTexDataAsRGBA32(&pixels, &wide, &high);
+  io.DisplaySize = {1280, 1000};
+  session::SharedScene scene;
+  scene.period_ns = 1'000'000;
+  scene.arms.front().device = "sim";
+  scene.knobs.assign(40, knob(0, 1000));
+  const auto run = session::SharedRun::create("", scene, 10).value();
+  const auto reader = session::SharedReader::over(run->memory().again().value()).value();
+  Clockwork source(PlayHead::of_run(), reader.get());
+  ViewChoice choice;
+  for (int frame = 0; frame < 3; ++frame) {
+    io.DeltaTime = 0.02F;
+    ImGui::NewFrame();
+    draw_side_panel({900, 0, 380, 1000}, source, {}, choice);
+    ImGui::Render();
+  }
+  const ImGuiWindow* knobs = nullptr;
+  for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+    if (std::string(window->Name).find("/knobs") != std::string::npos) knobs = window;
+  }
+  ASSERT_NE(knobs, nullptr);
+  EXPECT_TRUE(knobs->ScrollbarY);
+  EXPECT_GE(knobs->ScrollMax.y + knobs->InnerRect.GetHeight(), knobs->ContentSize.y);
+  EXPECT_LE(knobs->Pos.y + knobs->Size.y, 1000);
 }
 
 TEST_F(SidePanel, ShowsEverythingInUsualWindowSizes) {

@@ -61,6 +61,22 @@ TEST(TouchMarks, ShowNoStylusWithoutOrientation) {
   EXPECT_GT((rolled(0) - rolled(1)).norm(), 1e-3);
 }
 
+TEST(TouchMarks, ForcesOfSeveralArmsShineThroughObjects) {
+  const auto shine = [](bool several) {
+    DrawnMoment moment;
+    moment.tick.f_sent_W = {0, 0, 2};
+    if (several) moment.others.emplace_back().tick.f_sent_W = {0, 1, 0};
+    const MarkChoice only_force{.arm = false, .tip = false, .force = true};
+    std::size_t shining = 0;
+    for (const Solid& solid : mark_touch({}, moment, 1, only_force).solids) {
+      shining += solid.shines_through ? 1 : 0;
+    }
+    return shining;
+  };
+  EXPECT_EQ(shine(false), 0U);
+  EXPECT_EQ(shine(true), 4U);  // a rod and a cone for each arm
+}
+
 TEST(TouchMarks, ShowNormalAndTangentialForce) {
   DrawnMoment moment;
   moment.tick.in_contact = true;

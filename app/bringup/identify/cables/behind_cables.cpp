@@ -105,7 +105,9 @@ void put_cables(Identified& found) {
   const auto hz = [&](std::size_t i) { return (*constants.cables)[i].antiresonance.value; };
   const std::size_t softest =
       std::min<std::size_t>({0, 1, 2}, [&](auto a, auto b) { return hz(a) < hz(b); });
-  if (!found.against.empty() && hz(softest) < LineForces::kLowest) {
+  // Below the lowest line the motion may fit well with a stiffness that is a quarter off, because a
+  // link on a very soft cable moves like a lighter one.
+  if (hz(softest) < LineForces::kLowest) {
     found.against.insert(
         found.against.begin(),
         fmt::format("The link of joint {} oscillates on its cable at {:.0f} Hz, but cables are "
@@ -121,7 +123,7 @@ void put_cables(Identified& found) {
     found.against.push_back(
         fmt::format("The cable of joint {} stretches (its link oscillates on it at {:.0f} Hz), but "
                     "the constants of motor and cable are too uncertain to be written: {:.2g} +- "
-                    "{:.2g} kg m^2, {:.3g} +- {:.2g} N m/rad. Record for longer (--seconds).",
+                    "{:.2g} kg m^2, {:.3g} +- {:.2g} N m/rad. Record for longer (--duration).",
                     i + 1, cable.antiresonance.value, cable.inertia.value, cable.inertia.plus_minus,
                     cable.stiffness.value, cable.stiffness.plus_minus));
   }

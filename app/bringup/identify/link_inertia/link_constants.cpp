@@ -59,7 +59,7 @@ driver::Result<WrittenLinks> written_links(const SeenLinks& seen, const driver::
   if (auto good = check_written(at(upper)); !(upper > 0) || !good) {
     return driver::Error{
         "No physical links fit this motion: the inertia would be negative in some pose. Check the "
-        "arm for backlash and rubbing parts, and record for longer (--seconds)."};
+        "arm for backlash and rubbing parts, and record for longer (--duration)."};
   }
   // More coupling means more inertia everywhere.
   for (int round = 0; round < 60; ++round) {

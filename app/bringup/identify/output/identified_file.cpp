@@ -47,10 +47,14 @@ driver::Result<void> put_torques(const YAML::Node& root, const scene::ArmFile& b
     torque[i] = declared * found.gain[i].value;
     error = std::max(error, declared * found.gain[i].plus_minus);
   }
-  const std::string values = fmt::format(
-      "[{:.6g}, {:.6g}, {:.6g}]  # N m/A at the motor{} [I {}, {}, +- {:.2g}{}]", torque[0],
-      torque[1], torque[2], before.is<driver::DeltaArm>() ? ", 1 A being 1000 motor values" : "",
-      mark.date, mark.arm, error, found.absolute ? "" : "; their mean is the declared value");
+  std::string list;
+  for (int i = 0; i < before.motors(); ++i) {
+    list += fmt::format("{}{:.6g}", i == 0 ? "" : ", ", torque[static_cast<std::size_t>(i)]);
+  }
+  const std::string values =
+      fmt::format("[{}]  # N m/A at the motor{} [I {}, {}, +- {:.2g}{}]", list,
+                  before.is<driver::DeltaArm>() ? ", 1 A being 1000 motor values" : "", mark.date,
+                  mark.arm, error, found.absolute ? "" : "; their mean is the declared value");
   const YAML::Node joints = root["joints"];
   bool put = false;
   if (joints && joints["torque_constant"]) {
@@ -253,7 +257,8 @@ driver::Result<std::string> identified_text(const std::string& text, const ArmCo
               near_train(train.viscous[k], cable.viscous.value) &&
               near_train(train.coulomb[k], cable.coulomb.value);
     }
-    right = right && near(read->model.drives[i].torque_constant, torque[i]);
+    right =
+        right && (k >= read->motors() || near(read->model.drives[i].torque_constant, torque[i]));
   }
   if (!right) return bad_form("form");
   return written;

@@ -216,7 +216,7 @@ double MotionEquations::noise() const {
   double curvature = 0;
   for (const double value : bump_.curvature) curvature += value * value;
   const Eigen::Matrix3d J = at(equations_.front().middle).G.inverse();
-  const double at_tip = (masses_ * J * motion_.step.asDiagonal()).squaredNorm() / 3;
+  const double at_tip = (masses_ * J * motion_.step.asDiagonal()).squaredNorm() / motion_.motors;
   return std::sqrt(curvature * at_tip / 12) / area_;
 }
 

@@ -70,6 +70,9 @@ class Trials:
         self.conditions = [each[at] for at in row]  #: conditions of all trials, in order
         self._next = 0
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({len(self.conditions)} trials, {self._next} done)"
+
     def condition(self) -> Optional[dict[str, Any]]:
         """Return the condition of the next trial; None after the last."""
         return dict(self.conditions[self._next]) if self._next < len(self.conditions) else None

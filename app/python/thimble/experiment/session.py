@@ -57,6 +57,9 @@ class Interleaved:
         self._seed = int(seed)
         self._taken = 0
 
+    def __repr__(self) -> str:
+        return f"Interleaved({', '.join(f'{name}: {one!r}' for name, one in self.tracks.items())})"
+
     def condition(self) -> Optional[dict[str, Any]]:
         """Return the next condition of a procedure that is not over; None if all are over."""
         name = self._turn()
@@ -118,6 +121,9 @@ class Session:
         except BaseException:
             self.close()
             raise
+
+    def __repr__(self) -> str:
+        return f"Session({self._log.path.name}: {self._number} trials done, {self.procedure!r})"
 
     def __enter__(self) -> "Session":
         return self

@@ -65,6 +65,13 @@ class Staircase:
         self._right = self._wrong = 0  # answers of each kind in a row
         self._heading = 0  # direction: -1 downwards, 1 upwards
 
+    def __repr__(self) -> str:
+        result = f"threshold {self.threshold:.4g}" if self.over else f"level {self.level:.4g}"
+        return (
+            f"Staircase({self.down} down, {self.up} up: {result}, {len(self.levels)} trials, "
+            f"{len(self.reversals)} of {self._max_reversals} reversals)"
+        )
+
     @property
     def over(self) -> bool:
         """Whether there are enough reversals or trials."""

@@ -38,6 +38,9 @@ class SubjectLog:
             self.close()
             raise
 
+    def __repr__(self) -> str:
+        return f"SubjectLog({self.path.name}: {len(self.lines)} trials{', closed' if self._file < 0 else ''})"
+
     def write(self, line: Mapping[str, Any]) -> dict[str, Any]:
         """Write a line, and return it as it will be read back."""
         if self._file < 0:

@@ -12,7 +12,8 @@ from .. import ArgumentError, Error, Meshes, PathOrName, Scene, Ticks, _core
 from .._arguments import optional_path, path_of, whole_of
 from .._meshes import core_meshes
 from .._scene_text import scene_file
-from .environment import spaces_of
+from .actions import Actions, workspace_of
+from .observations import checked_bodies, observation_space, observed
 from .spaces import NEXT_STEP, VectorBase, batched, seeds_of
 
 Vector = NDArray[np.float64]
@@ -50,6 +51,9 @@ class TouchVectorEnv(VectorBase):
         arm: Optional[PathOrName] = None,
         quality: str = "normal",
         meshes: Optional[Meshes] = None,
+        bodies: Sequence[str] = (),
+        actions: str = "world",
+        render_mode: Optional[str] = None,
     ) -> None:
         """Open the scene for `count` arms.
 
@@ -57,8 +61,10 @@ class TouchVectorEnv(VectorBase):
         (``ticks.force`` is (count, 3)) and the actions (count, 3). It returns (count,) numbers; 0 by default.
         terminated: ``terminated(ticks, actions)``, whether each goal was reached, (count,); by default
         never. Their values for arms that are restarted are ignored. The other options and errors are
-        those of :class:`TouchEnv`.
+        those of :class:`TouchEnv`. There are no pictures of many arms: render_mode is None.
         """
+        if render_mode is not None:
+            raise ArgumentError(f"render_mode: many arms have no pictures, found {render_mode!r}; use TouchEnv.")
         self.num_envs = whole_of("count", count, 1, _MAX_ARMS)
         self._frame_skip = whole_of("frame_skip", frame_skip, 1)
         self._reward = reward
@@ -75,9 +81,14 @@ class TouchVectorEnv(VectorBase):
         for warning in self._batch.warnings():
             warnings.warn(warning, RuntimeWarning, stacklevel=2)
         info = self._batch.info()
+        self._bodies = checked_bodies(bodies, self._batch.moving)
         self._rate = float(info["rate"])
         self._max_ticks = max(1, round(float(seconds) * self._rate))
-        self.single_action_space, self.single_observation_space = spaces_of(info, workspace)
+        low, high = workspace_of(info, workspace)
+        self._name = str(info["scene"])
+        self._actions = Actions(actions, low, high, self.seconds_per_step)
+        self.single_action_space = self._actions.space
+        self.single_observation_space = observation_space(info, low, high, len(self._bodies))
         self.action_space = batched(self.single_action_space, self.num_envs)
         self.observation_space = batched(self.single_observation_space, self.num_envs)
         self.render_mode = None
@@ -85,6 +96,7 @@ class TouchVectorEnv(VectorBase):
         self._randoms: list[np.random.Generator] = []
         self._ticks = np.zeros(self.num_envs, np.int64)  # ticks of each episode
         self._over = np.ones(self.num_envs, np.bool_)
+        self._targets = np.zeros((self.num_envs, 3))
         self._newest: Optional[Ticks] = None
 
     def __enter__(self) -> "TouchVectorEnv":
@@ -92,6 +104,12 @@ class TouchVectorEnv(VectorBase):
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+    def __repr__(self) -> str:
+        state = "closed" if self.closed else f'actions="{self._actions.kind}"'
+        return f'TouchVectorEnv("{self._name}", {self.num_envs} arms, {state})'
+
+    __str__ = __repr__
 
     @property
     def seconds_per_step(self) -> float:
@@ -111,7 +129,7 @@ class TouchVectorEnv(VectorBase):
         seed: Union[None, int, Sequence[Optional[int]]] = None,
         options: Optional[dict[str, Any]] = None,
     ) -> tuple[Vector, dict[str, Any]]:
-        """Begin an episode of each arm, and return observations (count, 11) and infos.
+        """Begin an episode of each arm, and return observations (count, 11 or more) and infos.
 
         seed: seeds of all following episodes, one for each arm; one number s gives s, s + 1, s + 2 and so
         on. options: ``{"seed": 3}`` sets the tremor's seed of these episodes directly, the same for all arms.
@@ -130,26 +148,28 @@ class TouchVectorEnv(VectorBase):
         self, actions: ArrayLike
     ) -> tuple[Vector, Vector, NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
         """Run ``frame_skip`` ticks of each arm. Returns observations, rewards, terminated, truncated, infos."""
-        goals = np.ascontiguousarray(actions, dtype=np.float64)
-        if goals.shape != self.action_space.shape:
-            raise ArgumentError(f"actions: expected the shape {self.action_space.shape}, found {goals.shape}.")
+        given = np.ascontiguousarray(actions, dtype=np.float64)
+        if given.shape != self.action_space.shape:
+            raise ArgumentError(f"actions: expected the shape {self.action_space.shape}, found {given.shape}.")
         if self._newest is None:
             raise Error("The environments have no episodes: call reset().")
         new_episode = self._over.copy()
-        if not np.isfinite(goals[~new_episode]).all():
+        if not np.isfinite(given[~new_episode]).all():
             raise ArgumentError("actions: expected three numbers for each arm.")
         ticks = np.where(new_episode, 0, np.minimum(self._frame_skip, self._max_ticks - self._ticks))
-        columns, reached = self._core().step(ticks.astype(np.uint32), goals)
+        targets = np.ascontiguousarray(self._actions.targets(given, self._targets))
+        columns, reached = self._core().step(ticks.astype(np.uint32), targets)
+        self._targets = np.where(reached.astype(np.bool_)[:, np.newaxis], targets, self._targets)
         self._ticks += ticks
         self._newest = Ticks(columns)
         begun = self._begin(new_episode, None)
         ticks_now = self._newest
         terminated = ticks_now.columns["fault"] != 0
         if self._terminated is not None:
-            terminated = terminated | self._checked("terminated", self._terminated(ticks_now, goals), np.bool_)
+            terminated = terminated | self._checked("terminated", self._terminated(ticks_now, given), np.bool_)
         rewards = np.zeros(self.num_envs)
         if self._reward is not None:
-            rewards = self._checked("reward", self._reward(ticks_now, goals), np.float64)
+            rewards = self._checked("reward", self._reward(ticks_now, given), np.float64)
         rewards[new_episode] = 0.0
         terminated &= ~new_episode
         truncated = (self._ticks >= self._max_ticks) & ~new_episode
@@ -186,6 +206,7 @@ class TouchVectorEnv(VectorBase):
         self._core().restart(numbers, seeds[numbers])
         columns, _ = self._core().step(which.astype(np.uint32))
         self._newest = Ticks(columns)
+        self._targets[which] = self._newest.tip[which]
         self._ticks[which] = 1
         self._over[which] = False
         return seeds
@@ -194,10 +215,10 @@ class TouchVectorEnv(VectorBase):
         self, begun: NDArray[np.bool_], seeds: NDArray[np.uint64], reached: NDArray[np.bool_]
     ) -> tuple[Vector, dict[str, Any]]:
         ticks = self.ticks
-        observations = np.concatenate(
-            [ticks.tip, ticks.velocity, ticks.force, ticks.depth[:, np.newaxis], ticks.in_contact[:, np.newaxis]],
-            axis=1,
-        )
+        poses: list[Any] = []
+        if self._bodies:
+            poses.append(self._core().bodies(self._bodies).reshape(self.num_envs, -1))
+        observations = observed(ticks, poses, self.single_observation_space)
         faults = np.array([_core.fault(int(one))[0] if one else "" for one in ticks.columns["fault"]], dtype=object)
         values_by_key: dict[str, NDArray[Any]] = {
             "reached": reached,

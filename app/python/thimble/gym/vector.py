@@ -89,6 +89,12 @@ class VectorEnv(VectorBase):
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    def __repr__(self) -> str:
+        state = "closed" if self.closed else f"in {len(self._workers)} processes"
+        return f"VectorEnv({self.num_envs} environments, {state})"
+
+    __str__ = __repr__
+
     def reset(
         self,
         *,

@@ -12,6 +12,7 @@ function makeEye(canvas, changed) {
     camera.far = eye.distance * 100;
     camera.updateProjectionMatrix();
   };
+  const kMargin = 1.06;  // of the picture around the box [chosen: no corner touches the edge]
   // Shows a whole box from the side to which `side` points, from above.
   eye.frame = (box, camera, side) => {
     const flat = Math.hypot(side.x, side.y);
@@ -31,7 +32,7 @@ function makeEye(canvas, changed) {
                                     corner & 4 ? box.max.z : box.min.z).project(camera);
         largest = Math.max(largest, Math.abs(p.x), Math.abs(p.y));
       }
-      eye.distance *= largest;
+      eye.distance *= kMargin * largest;
     }
     eye.home = {target: eye.target.clone(), yaw: eye.yaw, pitch: eye.pitch, distance: eye.distance};
   };

@@ -139,6 +139,10 @@ function makePath(arm, step, radius) {
       begin = end - 1;
     }
   };
+  path.recolour = () => {
+    while (pieces.length > 0) remove(pieces.pop());
+    path.grow();
+  };
   path.show = (t, showAhead) => {
     for (const piece of pieces) {
       const rings = t < piece.begin ? 0 : t >= piece.end ? Infinity : placeOf(piece.tube.times, t);

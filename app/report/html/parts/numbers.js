@@ -1,5 +1,3 @@
-'use strict';
-
 // Description of the run (`about`), and its numbers: typed arrays over one block of bytes, by name.
 const about = JSON.parse(document.getElementById('about').textContent);
 const kTypes = {
@@ -17,7 +15,7 @@ const numbers = (() => {
   const raw = atob(document.getElementById('numbers').textContent);
   const bytes = new Uint8Array(raw.length);
   for (let i = 0; i < raw.length; ++i) bytes[i] = raw.charCodeAt(i);
-  return arraysOf(about.arrays, bytes.buffer, 0);
+  return arraysOf(about.arrays, inflate(bytes, about.numbers_bytes).buffer, 0);
 })();
 
 // Returns the last index of an increasing array whose value is not above `t`; 0 if there is none.
@@ -69,13 +67,17 @@ const arms = about.arms.map((_, number) => armOf(number));
 const span = {begin: 0, end: Math.max(0.001, ...arms.map(arm => (arm.t.length ? arm.t[arm.t.length - 1] : 0)))};
 let forceScale = roundUp(Math.max(...arms.map(arm => arm.maxForce)));
 
-// Colour of a force: grey for none, then light to dark; distinguishable for colour-blind people.
-const kForceStops = [[0.98, 0.82, 0.30], [0.95, 0.56, 0.17], [0.84, 0.25, 0.05], [0.38, 0.03, 0.12]];
+// Colour of a force: grey for none, then light to dark; distinguishable for colour-blind people. On dark ground the
+// largest force is brighter, because it would not be seen there.
+const kForceStops = [[0.98, 0.82, 0.30], [0.95, 0.56, 0.17], [0.84, 0.25, 0.05]];
+const kForceStopsLight = [...kForceStops, [0.38, 0.03, 0.12]];
+const kForceStopsDark = [...kForceStops, [0.82, 0.10, 0.44]];
 function forceColour(force) {
   if (!(force > 1e-4)) return [0.60, 0.64, 0.69];
-  const at = Math.min(0.9999, force / forceScale) * (kForceStops.length - 1);
+  const stops = theme.dark ? kForceStopsDark : kForceStopsLight;
+  const at = Math.min(0.9999, force / forceScale) * (stops.length - 1);
   const i = Math.floor(at);
-  return kForceStops[i].map((one, k) => one + (kForceStops[i + 1][k] - one) * (at - i));
+  return stops[i].map((one, k) => one + (stops[i + 1][k] - one) * (at - i));
 }
 
 const kObjectColours = ['#8fb3d1', '#e0b88a', '#96c3ac', '#c7a5c4', '#b9bfc7', '#d9cf9a'];

@@ -137,6 +137,15 @@
     byId('scale-most').textContent = +forceScale.toPrecision(3) + ' N';
   }
 
+  // Gives the timeline the horizontal extent of the plots.
+  function align() {
+    const extent = plots.extent();
+    if (!extent) return;
+    const box = byId('player').getBoundingClientRect();
+    byId('strip').style.marginLeft = extent[0] - box.left + 'px';
+    byId('strip').style.marginRight = box.right - extent[1] + 'px';
+  }
+
   let begun = false;
   function begin() {
     begun = true;
@@ -163,13 +172,21 @@
       addChoice('ahead', 'future path', true);
       if (arms.some(arm => arm.barTimes && arm.barTimes.length > 0)) addChoice('arm', 'arm', false);
       if (about.objects.some(object => object.left)) addChoice('left', 'final shape', false);
-      textIn(byId('stage-choices'), 'span', 'grid ' + +(1e3 * stage.cell).toPrecision(2) + ' mm').style.color = '#616e7c';
+      textIn(byId('stage-choices'), 'span', 'grid ' + +(1e3 * stage.cell).toPrecision(2) + ' mm');
     }
     sliding = true;
     plots = makePlots(byId('plots'), player);
     strip = makeStrip(byId('strip'), player);
     plots.layOut();
     sliding = false;
+    align();
+    theme.onChange(() => {
+      stage.recolour();
+      plots.recolour();
+      strip.forget();
+      showScale();
+      show();
+    });
 
     byId('play').addEventListener('click', () => {
       if (player.following) player.seek(player.t);
@@ -184,9 +201,14 @@
       plots.refresh();
       show();
     });
-    window.addEventListener('resize', () => {
+    // The stage takes the height that plots and panels leave.
+    new ResizeObserver(() => {
       stage.resize();
+      stage.draw();
+    }).observe(byId('stage'));
+    window.addEventListener('resize', () => {
       for (const graph of plots.graphs) if (!graph.box.hidden) graph.dygraph.resize();
+      align();
       show();
     });
     window.addEventListener('keydown', event => {
@@ -239,6 +261,11 @@
     play: player.play,
     speed: speed => { player.speed = speed; },
     zoom: (from, to) => plots.setWindow(from, to),
+    // Left and right ends on the screen: of the time axis of the plots, and of the timeline.
+    extents: () => {
+      const box = byId('strip').getBoundingClientRect();
+      return {plots: plots.extent(), strip: [box.left, box.right]};
+    },
     state: () => {
       const arm = arms[player.arm];
       const i = placeOf(arm.t, player.t);

@@ -1,15 +1,15 @@
-// Plots of one arm over time, all with the same window; a click moves the player to that time.
+// Colours are names of variables in page.css. Plots of one arm over time, all with the same window; a click moves the player to that time.
 const kPlots = [
   {title: 'Force', unit: 'N', channels: [
-    {name: about.replayed ? 'replayed' : 'requested', colour: '#7b8794', on: true, of: (arm, i) => arm.asked[i]},
-    {name: about.replayed ? 'recorded' : 'sent', colour: '#d55e00', on: true, of: (arm, i) => arm.force[i]}]},
+    {name: about.replayed ? 'replayed' : 'requested', colour: 'requested', on: true, of: (arm, i) => arm.asked[i]},
+    {name: about.replayed ? 'recorded' : 'sent', colour: 'force', on: true, of: (arm, i) => arm.force[i]}]},
   {title: 'Depth', unit: 'mm', channels: [
-    {name: 'depth', colour: '#0072b2', on: true, of: (arm, i) => 1e3 * arm.depth[i]}]},
+    {name: 'depth', colour: 'depth', on: true, of: (arm, i) => 1e3 * arm.depth[i]}]},
   {title: 'Tick', unit: 'ms', channels: [
-    {name: 'period', colour: '#00805f', on: true, of: (arm, i) => 1e3 * arm.period[i]},
-    {name: 'computing', colour: '#8e2a8b', on: !about.virtual && !about.replayed, of: (arm, i) => 1e3 * arm.work[i]}]},
+    {name: 'period', colour: 'period', on: true, of: (arm, i) => 1e3 * arm.period[i]},
+    {name: 'computing', colour: 'computing', on: !about.virtual && !about.replayed, of: (arm, i) => 1e3 * arm.work[i]}]},
   {title: 'Speed', unit: 'mm/s', channels: [
-    {name: 'speed', colour: '#9a6b00', on: false, of: (arm, i) => 1e3 * arm.speed[i]}]}];
+    {name: 'speed', colour: 'speed', on: false, of: (arm, i) => 1e3 * arm.speed[i]}]}];
 
 // Returns the rows to draw between two times: as many as a screen shows, with every minimum and maximum. The first
 // and the last row of all are included, so that the axis has its full range.
@@ -40,6 +40,17 @@ function makePlots(box, player) {
   const channelBox = document.getElementById('channels');
   let setting = false;
 
+  const colours = plot => ({colors: plot.channels.map(channel => theme.colour(channel.colour)),
+                            axisLineColor: theme.colour('axis'), gridLineColor: theme.colour('grid-line')});
+  plots.recolour = () => plots.graphs.forEach(graph => graph.dygraph.updateOptions(colours(graph.plot)));
+  // Returns the left and the right end of the time axis on the screen.
+  plots.extent = () => {
+    const graph = plots.graphs.find(one => !one.box.hidden);
+    if (!graph) return null;
+    const area = graph.dygraph.getArea();
+    const left = graph.inner.getBoundingClientRect().left + area.x;
+    return [left, left + area.w];
+  };
   const dataOf = graph => {
     const arm = arms[player.arm];
     const channels = graph.plot.channels;
@@ -50,7 +61,7 @@ function makePlots(box, player) {
   // Draws contact as background, and events as lines.
   const underlay = (canvas, area, dygraph) => {
     const arm = arms[player.arm];
-    canvas.fillStyle = '#eef3f8';
+    canvas.fillStyle = theme.colour('contact');
     for (const [begin, end] of player.contacts()) {
       const [a, b] = [dygraph.toDomXCoord(begin), dygraph.toDomXCoord(end)];
       if (b >= area.x && a <= area.x + area.w) canvas.fillRect(a, area.y, Math.max(1, b - a), area.h);
@@ -58,7 +69,7 @@ function makePlots(box, player) {
     for (const mark of arm.marks) {
       const x = dygraph.toDomXCoord(mark.begin);
       if (x < area.x || x > area.x + area.w) continue;
-      canvas.fillStyle = kMarkColours[mark.kind];
+      canvas.fillStyle = markColour(mark.kind);
       const width = mark.kind === 'fault' ? 2 : 1;
       canvas.globalAlpha = mark.kind === 'fault' ? 1 : 0.55;
       canvas.fillRect(x, area.y, width, area.h);
@@ -87,19 +98,17 @@ function makePlots(box, player) {
     cursor.className = 'cursor';
     outer.append(head, inner);
     box.append(outer);
-    const graph = {plot, box: outer, head, cursor, hovered: null};
+    const graph = {plot, box: outer, inner, head, cursor, hovered: null};
     graph.dygraph = new Dygraph(inner, dataOf(graph), {
       labels: ['t', ...plot.channels.map(channel => channel.name)],
-      colors: plot.channels.map(channel => channel.colour),
       visibility: plot.channels.map(channel => channel.on),
       dateWindow: plots.window.slice(),
+      ...colours(plot),
       legend: 'never',
       includeZero: true,
       strokeWidth: 1.3,
       highlightCircleSize: 2,
-      axisLineColor: '#9aa5b1',
-      gridLineColor: '#e4e8ec',
-      axes: {y: {axisLabelWidth: 44, pixelsPerLabel: 22},
+      axes: {y: {axisLabelWidth: 44, pixelsPerLabel: 20},
              x: {axisLabelFormatter: t => +t.toFixed(4) + ' s'}},
       underlayCallback: underlay,
       clickCallback: (event, t) => player.seek(t),
@@ -120,7 +129,7 @@ function makePlots(box, player) {
       check.checked = channel.on;
       check.dataset.channel = channel.name;
       const line = document.createElement('i');
-      line.style.background = channel.colour;
+      line.style.background = 'var(--' + channel.colour + ')';
       const name = plot.channels.length > 1 ? plot.title + ' ' + channel.name : plot.title;
       label.append(check, line, name);
       channelBox.append(label);
@@ -131,9 +140,6 @@ function makePlots(box, player) {
       });
     });
   }
-  const hint = document.createElement('span');
-  hint.textContent = 'click: go to time; drag: zoom; shift-drag: pan; double-click: show all';
-  channelBox.append(hint);
 
   plots.layOut = () => {
     setting = true;

@@ -7,7 +7,7 @@ function makeStage(box) {
     const note = document.getElementById('stage-note');
     note.textContent = 'This browser does not support WebGL, so the scene is not shown; plots and figures are below.';
     note.hidden = false;
-    return {show() {}, draw() {}, resize() {}, drawn: 0};
+    return {show() {}, draw() {}, resize() {}, recolour() {}, grow() {}, drawn: 0};
   }
   const kOpening = 0.6;
   renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
@@ -54,27 +54,46 @@ function makeStage(box) {
   // A grid of 10 mm, or this times a power of ten, below the scene.
   const cell = Math.pow(10, Math.round(Math.log10(size / 15)));
   const cells = 2 * Math.ceil(0.55 * size / cell);
-  const grid = new THREE.GridHelper(cells * cell, cells, 0xb3bcc6, 0xccd3da);
-  grid.rotation.x = Math.PI / 2;
   const middle = bounds.getCenter(new THREE.Vector3());
-  grid.position.set(Math.round(middle.x / cell) * cell, Math.round(middle.y / cell) * cell,
-                    bounds.min.z - 0.002 * size);
-  scene.add(grid);
+  let grid = null;
+  function makeGrid() {
+    if (grid) {
+      scene.remove(grid);
+      grid.geometry.dispose();
+    }
+    grid = new THREE.GridHelper(cells * cell, cells, theme.colour('grid-middle'), theme.colour('grid'));
+    grid.rotation.x = Math.PI / 2;
+    grid.position.set(Math.round(middle.x / cell) * cell, Math.round(middle.y / cell) * cell,
+                      bounds.min.z - 0.002 * size);
+    scene.add(grid);
+  }
+  makeGrid();
 
   // Drawn parts of each arm.
   const ball = new THREE.SphereBufferGeometry(1, 24, 16);
   const rod = new THREE.CylinderBufferGeometry(1, 1, 1, 12);
-  const plain = colour => new THREE.MeshPhongMaterial({color: colour, shininess: 40});
+  const materials = new Map();  // by the name of their colour in page.css
+  const plain = name => {
+    if (!materials.has(name)) materials.set(name, new THREE.MeshPhongMaterial({color: theme.colour(name), shininess: 40}));
+    return materials.get(name);
+  };
+  // Draws a part of an arm faintly where objects hide it.
+  const hidden = name => {
+    const material = plain(name).clone();
+    Object.assign(material, {transparent: true, opacity: 0.45, depthTest: false, depthWrite: false});
+    materials.set(name + ' hidden', material);
+    return material;
+  };
   const sides = arms.map(arm => {
     const path = makePath(arm, size / 700, size / 330);
-    const tip = new THREE.Mesh(ball, plain('#0b3c5d'));
-    const proxy = new THREE.Mesh(ball, plain('#f5b700'));
-    const shaft = new THREE.Mesh(rod, plain('#d55e00'));
-    const head = new THREE.Mesh(new THREE.ConeBufferGeometry(1, 1, 20), plain('#d55e00'));
+    const tip = new THREE.Mesh(ball, plain('tip'));
+    const proxy = new THREE.Mesh(ball, plain('proxy'));
+    const shaft = new THREE.Mesh(rod, plain('force'));
+    const head = new THREE.Mesh(new THREE.ConeBufferGeometry(1, 1, 20), plain('force'));
     tip.scale.setScalar(size / 110);
     proxy.scale.setScalar(size / 130);
     // A tip that is a ball, around the proxy.
-    const around = new THREE.Mesh(ball, plain('#4a525c'));
+    const around = new THREE.Mesh(ball, plain('tip-ball'));
     around.material.transparent = true;
     around.material.opacity = 0.4;
     around.material.depthWrite = false;
@@ -82,7 +101,10 @@ function makeStage(box) {
     around.visible = false;
     const bars = [];
     for (const count of arm.lines || []) {
-      for (let i = 0; i + 1 < count; ++i) bars.push(new THREE.Mesh(rod, plain('#8a94a0')));
+      for (let i = 0; i + 1 < count; ++i) bars.push(new THREE.Mesh(rod, plain('bar')));
+    }
+    for (const [part, colour] of [[tip, 'tip'], [proxy, 'proxy'], [shaft, 'force'], [head, 'force']]) {
+      part.add(new THREE.Mesh(part.geometry, hidden(colour)));
     }
     scene.add(path.group, tip, proxy, around, shaft, head, ...bars);
     return {path, tip, proxy, around, shaft, head, bars};
@@ -178,6 +200,12 @@ function makeStage(box) {
     renderer.setSize(box.clientWidth, box.clientHeight, false);
     camera.aspect = box.clientWidth / Math.max(1, box.clientHeight);
     if (!eye.home) eye.frame(bounds, camera, touchedSide());
+    stage.dirty = true;
+  };
+  stage.recolour = () => {
+    makeGrid();
+    for (const [name, material] of materials) material.color.set(theme.colour(name.split(' ')[0]));
+    for (const side of sides) side.path.recolour();
     stage.dirty = true;
   };
   stage.cell = cell;

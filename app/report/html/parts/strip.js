@@ -1,5 +1,5 @@
 // The timeline: force over the whole run, contact, events, the window of the plots, and the current time.
-const kMarkColours = {fault: '#b3261e', warning: '#b7791f', gate: '#8e2a8b', note: '#9aa5b1'};
+const markColour = kind => theme.colour(kind === 'fault' ? 'bad' : kind);
 
 function makeStrip(box, player) {
   const canvas = box.querySelector('canvas');
@@ -12,9 +12,9 @@ function makeStrip(box, player) {
     ground.width = width;
     ground.height = height;
     const pen = ground.getContext('2d');
-    pen.fillStyle = '#fff';
+    pen.fillStyle = theme.colour('strip');
     pen.fillRect(0, 0, width, height);
-    pen.fillStyle = '#dfe9f2';
+    pen.fillStyle = theme.colour('contact');
     const at = t => (t - span.begin) / (span.end - span.begin) * width;
     for (const [begin, end] of player.contacts()) {
       pen.fillRect(at(begin), 0, Math.max(1, at(end) - at(begin)), height);
@@ -35,7 +35,7 @@ function makeStrip(box, player) {
       pen.fillRect(x, height - high, 1, high);
     }
     for (const mark of arm.marks) {
-      pen.fillStyle = kMarkColours[mark.kind];
+      pen.fillStyle = markColour(mark.kind);
       const x = at(mark.begin);
       pen.fillRect(x, 0, mark.kind === 'fault' ? 3 : 2, mark.kind === 'fault' ? height : 7);
     }
@@ -52,11 +52,12 @@ function makeStrip(box, player) {
     pen.drawImage(ground, 0, 0);
     const [begin, end] = player.window();
     const at = t => (t - span.begin) / (span.end - span.begin) * width;
-    pen.fillStyle = 'rgba(31, 41, 51, 0.16)';
+    pen.fillStyle = theme.colour('shade');
     if (begin > span.begin) pen.fillRect(0, 0, at(begin), height);
     if (end < span.end) pen.fillRect(at(end), 0, width, height);
-    pen.fillStyle = '#0b3c5d';
-    pen.fillRect(Math.min(width - 3, at(player.t) - 1), 0, 3, height);
+    pen.fillStyle = theme.colour('ink');
+    const thick = Math.max(2, Math.round(2 * scale));
+    pen.fillRect(Math.max(0, Math.min(width - thick, at(player.t) - thick / 2)), 0, thick, height);
     box.setAttribute('aria-valuemin', span.begin.toFixed(3));
     box.setAttribute('aria-valuemax', span.end.toFixed(3));
     box.setAttribute('aria-valuenow', player.t.toFixed(3));

@@ -1,7 +1,7 @@
-#include "thimble/scene/device_settings.h"
-
 #include "energy_guard_settings.h"
 #include "motion_watch_settings.h"
+#include "thimble/driver/device.h"
+#include "thimble/scene/arm_file.h"
 
 namespace thimble::scene {
 namespace {

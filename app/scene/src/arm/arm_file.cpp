@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "arm_table.h"
 #include "energy_guard_settings.h"
@@ -17,7 +19,9 @@
 #include "nanoseconds.h"
 #include "read_scene.h"
 #include "simulation_section.h"
+#include "thimble/scene/arm_policy.h"
 #include "thimble/scene/shipped_files.h"
+#include "wire_section.h"
 #include "yaml/yaml_reader.h"
 
 namespace thimble::scene {
@@ -34,6 +38,47 @@ driver::SerialArm read_geometry(YamlMap map) {
   geometry.length_c = map.require_number("length_c", "m", 0.01, 1);
   map.finish();
   return geometry;
+}
+
+driver::PaddleArm read_paddle(YamlMap map) {
+  driver::PaddleArm geometry;
+  geometry.handle = map.require_number("handle", "m", 0.01, 1);
+  map.finish();
+  return geometry;
+}
+
+driver::FiveBarArm read_five_bar(YamlMap map) {
+  driver::FiveBarArm geometry;
+  geometry.base = map.require_number("base", "m", 0, 1);
+  geometry.crank_1 = map.require_number("crank_1", "m", 0.01, 1);
+  geometry.crank_2 = geometry.crank_1;
+  if (map.has("crank_2")) geometry.crank_2 = map.require_number("crank_2", "m", 0.01, 1);
+  geometry.distal_1 = map.require_number("distal_1", "m", 0.01, 1);
+  geometry.distal_2 = geometry.distal_1;
+  if (map.has("distal_2")) geometry.distal_2 = map.require_number("distal_2", "m", 0.01, 1);
+  map.finish();
+  return geometry;
+}
+
+driver::CartesianArm read_cartesian(YamlMap map) {
+  driver::CartesianArm geometry;
+  const std::size_t axes = map.list_size("radius");
+  geometry.axes = static_cast<int>(axes >= 1 && axes <= 3 ? axes : 3);
+  map.set_motors(geometry.axes);
+  geometry.radius = map.require_vector3("radius", "m", 1e-4, 1);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis >= geometry.axes || !(geometry.radius[axis] > 0)) geometry.radius[axis] = 1;
+  }
+  map.finish();
+  return geometry;
+}
+
+/// Reads the geometry of a shape that is not built in.
+driver::ArmGeometry read_geometry(YamlMap map, std::string_view shape) {
+  if (shape == "paddle") return read_paddle(std::move(map));
+  if (shape == "five_bar") return read_five_bar(std::move(map));
+  if (shape == "cartesian") return read_cartesian(std::move(map));
+  return read_geometry(std::move(map));
 }
 
 /// Reads the thermal limits of the motors: both keys or none.
@@ -79,6 +124,8 @@ void read_built_in_joints(YamlMap map, const driver::ShapeRow& shape, driver::Ar
 }
 
 void read_joints(YamlMap map, driver::ArmModel& model, driver::HeatSettings& heat) {
+  const int motors = driver::motor_count(model.geometry);
+  map.set_motors(motors);
   const Eigen::Vector3d ratio = map.require_vector3("ratio", "motor turns per joint turn", 1, 1000);
   const Eigen::Vector3d torque = map.require_vector3("torque_constant", "N m/A", 1e-4, 10);
   const Eigen::Vector3d current = map.require_vector3("current_max", "A", 0.01, 32);
@@ -91,8 +138,15 @@ void read_joints(YamlMap map, driver::ArmModel& model, driver::HeatSettings& hea
     model.drives[i] = {static_cast<double>(motor_sign[i]), ratio[k], torque[k], current[k]};
     model.encoders[i] = {static_cast<double>(encoder_sign[i]), static_cast<double>(counts[i]),
                          home[i]};
+    if (k < motors) continue;
+    model.drives[i] = driver::absent_motor();
+    model.encoders[i] = driver::absent_encoder();
   }
   heat = read_heat(map);
+  for (auto i = static_cast<std::size_t>(motors); i < 3; ++i) {
+    heat.continuous_current[i] = heat.continuous_current[0];
+    heat.time_constant[i] = heat.time_constant[0];
+  }
   map.finish();
 }
 
@@ -149,6 +203,20 @@ driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
                fmt::format("expected at most the declared force of the arm, {:g} N, found {:g}",
                            arm.declared.force, limits.force_max));
   }
+  if (arm.wire) {
+    const double own = arm.wire->text.watchdog;
+    if (own == 0 && limits.force_max > kFeelCheckForceMax) {
+      map.reject("force_max",
+                 fmt::format("expected at most {:g} N, because the board has no watchdog (wire, "
+                             "watchdog: 0): when the program stops, the motors keep the last force",
+                             kFeelCheckForceMax));
+    }
+    if (own > 0 && limits.watchdog_ns > to_ns(own)) {
+      map.reject("watchdog", fmt::format("expected at most the time of the board's own watchdog, "
+                                         "{:g} s (wire, watchdog)",
+                                         own));
+    }
+  }
   // If one of them is invalid, it is already reported and has its smallest value.
   if (limits.stall_ns >= limits.watchdog_ns && limits.watchdog_ns > to_ns(0.001)) {
     map.reject("stall", "expected a shorter time than watchdog");
@@ -173,14 +241,79 @@ driver::GateLimits read_gate(YamlMap map, ArmFile& arm) {
   return limits;
 }
 
-WorkspaceBox read_workspace(YamlMap map) {
+/// Reads the place of the line or plane in which the tip of an arm with one or two motors moves:
+/// the position of the base, and the direction of the world of each of its axes.
+void read_axes_place(YamlMap map, ArmFile& arm) {
+  const int motors = arm.motors();
+  arm.p_WB = map.require_vector3("position", "m", -2, 2);
+  constexpr std::array<std::string_view, 6> kDirections{"x", "y", "z", "-x", "-y", "-z"};
+  const auto along = map.optional_choices(
+      "along", motors == 1 ? std::vector<std::size_t>{2} : std::vector<std::size_t>{1, 2},
+      {kDirections.begin(), kDirections.end()});
+  map.finish();
+  if (along.empty()) return;  // the mistake is already reported
+  if (along.size() != static_cast<std::size_t>(motors)) {
+    map.refuse("along", motors == 1 ? "expected one direction, that of the arm's line"
+                                    : "expected two directions, those of the arm's x and y axes");
+    return;
+  }
+  const auto direction = [](std::size_t choice) {
+    const double sign = choice < 3 ? 1 : -1;
+    return Eigen::Vector3d(sign * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(choice % 3)));
+  };
+  const Eigen::Vector3d x = direction(along.front());
+  const Eigen::Vector3d y = direction(motors == 1 ? (along.front() + 1) % 3 : along.back());
+  if (x.cross(y).isZero(0)) {
+    map.refuse("along", "expected two directions at right angles");
+    return;
+  }
+  arm.R_WB << x, y, x.cross(y);
+}
+
+/// Narrows the workspace of an arm with one or two motors to its line or plane, if that is along
+/// the axes of the world. Returns false if the box does not contain any of it.
+bool narrow_to_axes(WorkspaceBox& box, const ArmFile& arm) {
+  for (int axis = arm.motors(); axis < 3; ++axis) {
+    for (int k = 0; k < 3; ++k) {
+      if (std::abs(arm.R_WB(k, axis)) != 1) continue;
+      if (!(arm.p_WB[k] >= box.min_W[k] && arm.p_WB[k] <= box.max_W[k])) return false;
+      box.min_W[k] = box.max_W[k] = arm.p_WB[k];
+    }
+  }
+  return true;
+}
+
+/// Reads how the home pose is known. Precondition: the workspace is read.
+HomePose read_home(YamlMap map, const ArmFile& arm) {
+  HomePose home;
+  home.how = static_cast<HomeMethod>(
+      1 + map.require_choice("how", {kHomeMethods.begin(), kHomeMethods.end()}));
+  if (map.has("check")) {
+    home.check_p_WT = map.require_vector3("check", "m", -2, 2);
+    if ((arm.on_axes(*home.check_p_WT) - *home.check_p_WT).norm() > 1e-6 ||
+        !driver::inverse(arm.model.geometry,
+                         arm.R_WB.transpose() * (*home.check_p_WT - arm.p_WB))) {
+      map.reject("check", "expected a point that the tip can reach");
+    }
+  }
+  home.within = map.optional_number("within", home.within, "m", 1e-4, 0.1);
+  map.explain_unused("within", "needs check in the same section");
+  map.finish();
+  return home;
+}
+
+WorkspaceBox read_workspace(YamlMap map, const ArmFile& arm) {
   const Eigen::Vector3d min_W = map.require_vector3("min", "m", -2, 2);
   const Eigen::Vector3d max_W = map.require_vector3("max", "m", -2, 2);
   if (!(min_W.array() <= max_W.array()).all()) {
     map.reject("max", "expected no coordinate smaller than that of min");
   }
   map.finish();
-  return {min_W, max_W};
+  WorkspaceBox box{min_W, max_W};
+  if (!narrow_to_axes(box, arm)) {
+    map.reject("", "expected a box that contains a part of the line or plane of the arm's tip");
+  }
+  return box;
 }
 
 DeclaredLimits read_declared(YamlMap map) {
@@ -272,15 +405,30 @@ const driver::ShapeRow& vendor_pose_shape() {
   });
 }
 
+/// Protocol of arms whose wire is described, and its row in the place of one of the table of arms.
+constexpr std::string_view kDescribedProtocol = "described";
+constexpr driver::ArmRow kDescribedRow{.kind = driver::ArmKind::kDescribed,
+                                       .protocol = kDescribedProtocol};
+
 /// Reads protocol and shape of the arm, by their names in the table of arms.
 void read_kind(YamlMap& root, ArmFile& arm) {
   std::vector<std::string_view> protocols, shapes;
   for (const driver::ArmRow& row : driver::arm_table()) protocols.push_back(row.protocol);
   for (const driver::ShapeRow& row : driver::arm_shapes()) shapes.push_back(row.name);
-  const driver::ArmRow& row = driver::arm_table()[root.require_choice("protocol", protocols)];
+  protocols.push_back(kDescribedProtocol);
+  const std::size_t index = root.require_choice("protocol", protocols);
+  const bool described = index == driver::arm_table().size();
+  const driver::ArmRow row = described ? kDescribedRow : driver::arm_table()[index];
   arm.protocol = row.kind;
-  arm.boards = read_boards(root, row);
-  if (row.has_own_link()) {
+  if (described) {
+    arm.boards = {driver::BoardKind::kDescribed};
+    root.explain_unused("board", "is described by the section wire; remove it");
+    arm.wire = read_wire(root.require_map("wire"));
+  } else {
+    arm.boards = read_boards(root, row);
+    root.explain_unused("wire", "needs protocol: described");
+  }
+  if (!described && row.has_own_link()) {
     // The software of its vendor knows joints and motors. A file that contains them is rejected.
     arm.model = vendor_pose_shape().built_in();
     for (const char* key : {"shape", "board_model", "geometry", "joints", "gimbal"}) {
@@ -299,7 +447,7 @@ void read_kind(YamlMap& root, ArmFile& arm) {
       read_built_in_joints(root.require_map("joints"), shape, arm.model, arm.heat);
     }
   } else {
-    arm.model.geometry = read_geometry(root.require_map("geometry"));
+    arm.model.geometry = read_geometry(root.require_map("geometry"), shape.name);
     read_joints(root.require_map("joints"), arm.model, arm.heat);
   }
   if ((row.kind == driver::ArmKind::kFalcon) != arm.is<driver::DeltaArm>()) {
@@ -309,7 +457,7 @@ void read_kind(YamlMap& root, ArmFile& arm) {
     root.reject("shape", "told is only for arms that a service or library of their vendor drives");
   }
   if (!root.has("gimbal")) return;
-  if (!row.carries_gimbal) {
+  if (!(arm.wire ? arm.wire->report.has(driver::WireItem::kGimbal) : row.carries_gimbal)) {
     root.reject("gimbal",
                 "the reports of " + std::string(row.protocol) + " contain no gimbal encoders");
   }
@@ -332,11 +480,18 @@ driver::Result<ArmFile> read_arm(YamlFile& yaml) {
   arm.name = root.require_string("name");
   arm.description = root.optional_string("description", "");
   read_kind(root, arm);
-  YamlMap base = root.require_map("base");
-  arm.p_WB = base.require_vector3("position", "m", -2, 2);
-  arm.R_WB = base.optional_rotation("rotate_degrees");
-  base.finish();
-  arm.workspace = read_workspace(root.require_map("workspace"));
+  if (arm.motors() < 3 && root.has("at")) {
+    read_axes_place(root.require_map("at"), arm);
+    root.explain_unused("base", "cannot be used with at, which has the position of the base");
+  } else {
+    root.explain_unused("at", "needs shape: paddle, five_bar or cartesian with one or two motors");
+    YamlMap base = root.require_map("base");
+    arm.p_WB = base.require_vector3("position", "m", -2, 2);
+    arm.R_WB = base.optional_rotation("rotate_degrees");
+    base.finish();
+  }
+  arm.workspace = read_workspace(root.require_map("workspace"), arm);
+  if (root.has("home")) arm.home = read_home(root.require_map("home"), arm);
   arm.declared = read_declared(root.require_map("declared"));
   arm.limits = read_gate(root.require_map("gate"), arm);
   if (root.has("gravity_compensation")) {

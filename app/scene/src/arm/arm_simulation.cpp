@@ -5,12 +5,15 @@
 #include "arm_table.h"
 #include "arms/falcon/falcon_boot.h"
 #include "board/sim_transport.h"
+#include "hand/button_plan.h"
 #include "hand/place_text.h"
 #include "thimble/driver/wire_link.h"
 #include "usb/simulated_falcon.h"
 
 namespace thimble::scene {
 namespace {
+
+constexpr double kBorder = 1e-9;  // m [chosen: far less than an encoder count]
 
 /// Returns the point of the arm's workspace closest to a point in the world.
 Eigen::Vector3d in_workspace(const ArmFile& file, const Eigen::Vector3d& p_W) {
@@ -26,7 +29,7 @@ driver::Result<device_sim::HandPath> path_in_base(const HandRoute& hand_W, const
   std::vector<device_sim::HandPath::Point> points;
   points.reserve(hand_W.size());
   for (const auto& [time, p_WH] : hand_W) {
-    points.push_back({.time = time, .p_BH = in_base(file, p_WH)});
+    points.push_back({.time = time, .p_BH = in_base(file, file.on_axes(p_WH))});
   }
   return device_sim::HandPath::make(std::move(points));
 }
@@ -36,8 +39,47 @@ device_sim::SimulatedArmSettings settings_of(const ArmFile& file) {
   device_sim::SimulatedArmSettings settings = file.simulated;
   settings.firmware.protocol = file.protocol;
   settings.firmware.line_model = file.board_model;
+  settings.firmware.described = file.wire;
   return settings;
 }
+
+/// A link to a simulated arm, with the buttons that the hand holds.
+class ButtonLink final : public driver::ArmLink {
+ public:
+  ButtonLink(std::unique_ptr<driver::WireLink> link, const driver::Clock& clock,
+             std::vector<ButtonStep> steps, const std::atomic<std::uint16_t>& held)
+      : link_(std::move(link)), clock_(clock), plan_(std::move(steps)), held_(held) {}
+
+  const driver::ArmTraits& traits() const noexcept override { return link_->traits(); }
+  driver::LinkRead read(driver::ArmSample& sample, std::int64_t deadline_ns) noexcept override {
+    const driver::LinkRead read = link_->read(sample, deadline_ns);
+    if (read.status == driver::LinkStatus::kOk) {
+      sample.buttons = static_cast<std::uint16_t>(sample.buttons | planned() |
+                                                  held_.load(std::memory_order_relaxed));
+    }
+    return read;
+  }
+  driver::LinkWrite write(const driver::GatedForce& force, const driver::ArmSample& sample,
+                          const Eigen::Matrix3d& R_WB) noexcept override {
+    return link_->write(force, sample, R_WB);
+  }
+  driver::LinkStatus settled() noexcept override { return link_->settled(); }
+  bool numbers_reports() const noexcept override { return link_->numbers_reports(); }
+  driver::MotorCurrents currents() const noexcept override { return link_->currents(); }
+  void limit_currents(const std::array<driver::MotorDrive, 3>& limits) noexcept override {
+    link_->limit_currents(limits);
+  }
+
+ private:
+  unsigned planned() noexcept {
+    return plan_.empty() ? 0U : plan_.at(1e-9 * static_cast<double>(clock_.now_ns()));
+  }
+
+  std::unique_ptr<driver::WireLink> link_;
+  const driver::Clock& clock_;
+  ButtonPlan plan_;
+  const std::atomic<std::uint16_t>& held_;
+};
 
 }  // namespace
 
@@ -51,8 +93,11 @@ std::optional<Eigen::Vector3d> joint_angles_at(const ArmFile& file, const Eigen:
 }
 
 driver::Result<void> check_reach(const ArmFile& file, const HandRoute& hand_W) {
-  for (const auto& [time, p_WH] : hand_W) {
-    if (!file.workspace.holds(p_WH) || !joint_angles_at(file, p_WH)) {
+  for (const auto& [time, p_wanted] : hand_W) {
+    const Eigen::Vector3d p_WH = file.on_axes(p_wanted);
+    // A path along the border may leave the box by rounding.
+    const bool inside = (in_workspace(file, p_WH) - p_WH).norm() < kBorder;
+    if (!inside || !joint_angles_at(file, p_WH)) {
       return driver::Error{
           fmt::format("At {:.3f} s the hand would be at {} m, which the arm does not reach "
                       "within its workspace; move that waypoint or the object.",
@@ -82,7 +127,12 @@ driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::make(
 }
 
 driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::another(std::uint64_t seed) const {
-  return build(file_, *path_, firmware_, seed);
+  auto built = build(file_, *path_, firmware_, seed);
+  if (built) {
+    (*built)->plan_buttons(buttons_);
+    (*built)->buttons_allowed_ = buttons_allowed_;
+  }
+  return built;
 }
 
 driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::build(
@@ -108,11 +158,7 @@ driver::Result<std::unique_ptr<ArmSimulation>> ArmSimulation::build(
     return simulation;
   }
   const device_sim::SimulatedArmSettings settings = settings_of(file);
-  auto arm = file.is<driver::LinkageArm>()
-                 ? device_sim::SimulatedArm::make(driver::model_as<driver::LinkageArm>(file.model),
-                                                  settings, path, seed)
-                 : device_sim::SimulatedArm::make(driver::model_as<driver::SerialArm>(file.model),
-                                                  settings, path, seed);
+  auto arm = device_sim::SimulatedArm::make(file.model, settings, path, seed);
   if (!arm) return wrong(arm.error());
   simulation->board_arm_ = std::make_unique<device_sim::SimulatedArm>(std::move(arm).value());
   return simulation;
@@ -127,8 +173,10 @@ std::unique_ptr<driver::ArmLink> ArmSimulation::link(driver::Clock& clock) {
   }
   auto arm = file_.simulated.firmware.ideal_encoders && !falcon_
                  ? driver::make_ideal_arm(file_.model)
-                 : driver::make_arm(file_.protocol, file_.model);
-  return std::make_unique<driver::WireLink>(std::move(wire), std::move(arm));
+                 : driver::make_arm(file_.protocol, file_.model, file_.wire.get());
+  auto link = std::make_unique<driver::WireLink>(std::move(wire), std::move(arm));
+  if (buttons_.empty() && !buttons_allowed_) return link;
+  return std::make_unique<ButtonLink>(std::move(link), clock, buttons_, held_buttons_);
 }
 
 device_sim::Hand& ArmSimulation::hand() noexcept {
@@ -150,12 +198,12 @@ void ArmSimulation::settle(std::int64_t now_ns) noexcept {
 
 bool ArmSimulation::lead(const Eigen::Vector3d& p_WH) noexcept {
   if (!reaches(p_WH)) return false;
-  hand().lead(in_base(file_, in_workspace(file_, p_WH)));
+  hand().lead(in_base(file_, in_workspace(file_, file_.on_axes(p_WH))));
   return true;
 }
 
 bool ArmSimulation::reaches(const Eigen::Vector3d& p_WH) const noexcept {
-  return p_WH.allFinite() && joint_angles_at(file_, in_workspace(file_, p_WH));
+  return p_WH.allFinite() && joint_angles_at(file_, in_workspace(file_, file_.on_axes(p_WH)));
 }
 
 Eigen::Vector3d ArmSimulation::currents() const {

@@ -1,6 +1,8 @@
 #include "calibration.h"
 #include "arm_table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -9,6 +11,7 @@
 #include <system_error>
 
 #include "arm_table.h"
+#include "hand/place_text.h"
 #include "user_folders.h"
 #include "yaml/yaml_reader.h"
 
@@ -76,25 +79,43 @@ driver::Result<void> save_calibration(const std::string& name, const Calibration
 }
 
 void apply(const Calibration& calibration, ArmFile& file) {
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(file.motors()); ++i) {
     file.model.encoders[i].home_counts = calibration.home_counts[i];
     file.model.encoders[i].sign = calibration.encoder_sign[i];
     file.model.drives[i].sign = calibration.motor_sign[i];
   }
 }
 
+double calibration_move(const ArmFile& file, const Eigen::Vector3d& p_WHome, int axis) {
+  constexpr double kMax = 0.05, kStep = 0.005;  // m [chosen: easy to estimate without a ruler]
+  constexpr double kRoomMin = 0.01;  // m [chosen: with less, the home pose is at the edge]
+  const double room = file.workspace.max_W[axis] - p_WHome[axis];
+  const double width = file.workspace.max_W[axis] - file.workspace.min_W[axis];
+  // Behind a home pose at or beyond the edge of the box is room outside of it.
+  const double wanted = room > kRoomMin ? 0.8 * room : 0.4 * width;
+  return std::clamp(kStep * std::floor(wanted / kStep), kStep, kMax);
+}
+
 driver::Result<Calibration> find_calibration(const ArmFile& file, driver::ArmKind kind,
                                              const driver::ArmReading& home,
-                                             const std::array<driver::ArmReading, 3>& moved) {
-  constexpr double kMoveMin = 0.020;  // m
-  // With each of the eight sets of signs, the three motions have certain directions. The correct
-  // set gives the directions that the user was asked for.
-  double best = -4, second = -4;
+                                             const std::array<driver::ArmReading, 3>& moved,
+                                             const std::vector<int>& axes) {
+  constexpr double kMoveMin = 0.4;  // of the requested distance [chosen: 20 of 50 mm]
+  const auto motors = static_cast<std::size_t>(file.motors());
+  if (axes.size() != motors) {
+    return driver::Error{
+        "The line or plane of the tip is not along axes of the world, so the motions cannot be "
+        "asked for. Place it along them for the calibration (at in the arm file)."};
+  }
+  // With each set of signs (eight for three motors), the three motions have certain directions. The
+  // correct set gives the directions that the user was asked for.
+  const auto count = static_cast<double>(motors);
+  double best = -1 - count, second = -1 - count;
   bool moved_enough = false;
   Calibration found;
-  for (unsigned set = 0; set < 8; ++set) {
+  for (unsigned set = 0; set < 1U << motors; ++set) {
     Calibration tried;
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < motors; ++i) {
       const int in_file = file.model.encoders[i].sign < 0 ? -1 : 1;
       const int flip = (set >> i) & 1U ? -1 : 1;
       tried.encoder_sign[i] = flip * in_file;
@@ -105,15 +126,15 @@ driver::Result<Calibration> find_calibration(const ArmFile& file, driver::ArmKin
     }
     ArmFile as_tried = file;
     apply(tried, as_tried);
-    const auto arm = driver::make_arm(kind, as_tried.model);
+    const auto arm = driver::make_arm(kind, as_tried.model, file.wire.get());
     const Eigen::Vector3d p_home = arm->pose(home).p_BT;
+    const Eigen::Vector3d p_WHome = file.p_WB + file.R_WB * p_home;
     double score = 0;
     bool enough = true;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Vector3d step =
-          file.R_WB * (arm->pose(moved[static_cast<std::size_t>(axis)]).p_BT - p_home);
-      if (!(step.norm() > kMoveMin)) enough = false;
-      if (step.norm() > 0) score += step[axis] / step.norm();
+    for (std::size_t i = 0; i < motors; ++i) {
+      const Eigen::Vector3d step = file.R_WB * (arm->pose(moved[i]).p_BT - p_home);
+      if (!(step.norm() > kMoveMin * calibration_move(file, p_WHome, axes[i]))) enough = false;
+      if (step.norm() > 0) score += step[axes[i]] / step.norm();
     }
     moved_enough = moved_enough || enough;
     if (!(score < HUGE_VAL)) continue;
@@ -126,17 +147,40 @@ driver::Result<Calibration> find_calibration(const ArmFile& file, driver::ArmKin
     }
   }
   if (!moved_enough) {
-    return driver::Error{"The grip moved too little. Move it by 5 cm or more each time."};
-  }
-  // The three motions are within 37 degrees of the requested ones, and fit clearly better than with
-  // any other set.
-  if (best < 2.4 || best - second < 0.5) {
     return driver::Error{
-        "The motions do not determine the signs of the encoders. Start at the home pose and move "
-        "the grip straight towards you, to the right and up, and back to the home pose in "
-        "between."};
+        "The grip moved too little. Move it by the requested distance or more each time."};
+  }
+  // The motions are within 37 degrees of the requested ones, and fit clearly better than with any
+  // other set.
+  if (best < 0.8 * count || best - second < 0.5) {
+    return driver::Error{
+        motors < 3 ? "The motions do not determine the signs of the encoders. Start at the home "
+                     "pose and move the grip straight in each requested direction, and back to "
+                     "the home pose in between."
+                   : "The motions do not determine the signs of the encoders. Start at the home "
+                     "pose and move the grip straight towards you, to the right and up, and back "
+                     "to the home pose in between."};
   }
   return found;
+}
+
+driver::Result<void> check_home(const ArmFile& file, driver::ArmKind kind,
+                                const Calibration& calibration, const driver::ArmReading& there) {
+  if (!file.home.check_p_WT) return {};
+  ArmFile calibrated = file;
+  apply(calibration, calibrated);
+  const auto arm = driver::make_arm(kind, calibrated.model, file.wire.get());
+  const Eigen::Vector3d p_WT = file.p_WB + file.R_WB * arm->pose(there).p_BT;
+  const double away = (p_WT - *file.home.check_p_WT).norm();
+  // Written so that NaN is too far.
+  if (away <= file.home.within) return {};
+  return driver::Error{fmt::format(
+      "In the second pose the tip should be at {} m, but the encoders give {} m, {:.1f} mm away; "
+      "home.within allows {:.1f} mm. Put the arm into its home pose exactly and repeat. If it "
+      "stays "
+      "so, correct home_counts, counts_per_motor_turn, ratio or the lengths in the arm file.",
+      place_text(*file.home.check_p_WT, 3), place_text(p_WT, 3), 1e3 * away,
+      1e3 * file.home.within)};
 }
 
 }  // namespace thimble::scene

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "thimble/driver/arm.h"
 #include "thimble/driver/discovery.h"
@@ -46,13 +47,26 @@ THIMBLE_EXPORT driver::Result<void> save_calibration(const std::string& name,
 /// Applies a calibration to the contents of an arm file.
 void apply(const Calibration& calibration, ArmFile& file);
 
+/// Returns the distance that a user is asked to move the tip from its home pose along an axis of
+/// the world, m: at most 5 cm, and within the workspace.
+THIMBLE_EXPORT double calibration_move(const ArmFile& file, const Eigen::Vector3d& p_WHome,
+                                       int axis);
+
 /// Returns the calibration computed from the readings of the arm in its home pose, and after the
-/// user moved the grip from there towards the body (x), to the right (y), and up (z). The
-/// directions of the motors relative to their encoders are those of the file; `thimble feel-check`
-/// verifies them. Fails if the movements were too small (below 20 mm) or do not determine the
-/// signs.
+/// user moved the grip from there towards the body (x), to the right (y), and up (z). `axes`: axes
+/// of the world of these motions, as many as the arm has motors; `moved` has a reading for each.
+/// The directions of the motors relative to their encoders are those of the file; `thimble
+/// feel-check` verifies them. Fails if the movements were too small (below 40 % of
+/// `calibration_move`) or do not determine the signs.
 THIMBLE_EXPORT driver::Result<Calibration> find_calibration(
     const ArmFile& file, driver::ArmKind kind, const driver::ArmReading& home,
-    const std::array<driver::ArmReading, 3>& moved);
+    const std::array<driver::ArmReading, 3>& moved, const std::vector<int>& axes = {0, 1, 2});
+
+/// Compares the position of the tip in the second pose (ArmFile::home) with that of the reading
+/// `there`, made in it. Fails if they are farther apart than the file allows; succeeds for a file
+/// without a second pose.
+THIMBLE_EXPORT driver::Result<void> check_home(const ArmFile& file, driver::ArmKind kind,
+                                               const Calibration& calibration,
+                                               const driver::ArmReading& there);
 
 }  // namespace thimble::scene

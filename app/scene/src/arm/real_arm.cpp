@@ -6,20 +6,24 @@
 #include <string>
 #include <utility>
 
+#include "arm/wire_mention.h"
 #include "arm_table.h"
 #include "arms/falcon/falcon_boot.h"
 #include "arms/hfab/hfab_report.h"
 #include "arms/hfab/hfab_wire.h"
 #include "arms/woody/woody_proof.h"
 #include "arms/woody/woody_report.h"
+#include "board_identity.h"
 #include "log/logger.h"
 #include "signals.h"
 #include "thimble/driver/transports.h"
 #include "thimble/driver/wire_link.h"
+#include "thimble/scene/shipped_files.h"
 #include "transports/ftdi_line.h"
 #include "vendors/dhd/dhd_link.h"
 #include "vendors/haply/haply_link.h"
 #include "vendors/hd/hd_link.h"
+#include "wires/described_link.h"
 
 namespace thimble::scene {
 namespace {
@@ -131,10 +135,64 @@ Result<std::unique_ptr<driver::Transport>> open_wire(const FoundArm& arm, const 
     case BoardKind::kHaplyService:
     case BoardKind::kDhdLibrary:
     case BoardKind::kHdLibrary:
+    case BoardKind::kDescribed:
     case BoardKind::kOther:
       break;
   }
   return cannot_drive(arm);
+}
+
+/// Returns the board that the wire of an arm file describes.
+driver::DescribedBoard board_of(const ArmFile& file, const std::string& arm_file) {
+  const driver::WireTable& wire = *file.wire;
+  const driver::WireIdentity& identity = wire.text.identity;
+  return {.arm = file.name,
+          .arm_file = arm_file,
+          .vendor_id = identity.vendor_id,
+          .product_id = identity.product_id,
+          .product = identity.product,
+          .usage_page = identity.usage_page,
+          .usage = identity.usage,
+          .serial = wire.text.transport == driver::WireTransport::kSerial,
+          .bulk = wire.text.transport == driver::WireTransport::kBulk,
+          .proves_itself = wire.text.streams && (wire.numbered || wire.report.check_bytes > 0)};
+}
+
+/// Returns the boards that the installed arm files describe.
+std::vector<driver::DescribedBoard> described_boards() {
+  std::vector<driver::DescribedBoard> boards;
+  for (const ShippedFile& installed : installed_arms()) {
+    // Most arm files describe no wire; they are not read each time.
+    if (!names_described_wire(installed.path)) continue;
+    const auto file = load_arm(installed.path);
+    if (!file) {
+      terminal().warn("The board of this arm file is not recognised: {}", file.error().message);
+      continue;
+    }
+    if (file->wire) boards.push_back(board_of(*file, installed.name));
+  }
+  return boards;
+}
+
+/// Fails if a board has not the USB properties that the wire of an arm file describes.
+Result<void> check_described(const ArmFile& file, const FoundArm& arm) {
+  const driver::DescribedBoard board = board_of(file, "");
+  const driver::UsbFacts facts{.vendor_id = arm.vendor_id,
+                               .product_id = arm.product_id,
+                               .product = arm.product,
+                               .has_hidraw = arm.hid.in_bytes > 0 || arm.bus == driver::kHidBus,
+                               .hid = arm.hid,
+                               .has_tty = arm.bus == driver::kSerialBus};
+  if (driver::matches(board, facts)) return {};
+  return Error{fmt::format(
+      "The arm file {} describes a board {:04x}:{:04x}{} on {}, but {} is {:04x}:{:04x} \"{}\" on "
+      "{}. Choose the right file with --arm FILE, or correct the section wire, usb.",
+      file.name, board.vendor_id, board.product_id,
+      board.product.empty() ? "" : " \"" + board.product + '"',
+      board.bulk     ? driver::kBulkBus
+      : board.serial ? driver::kSerialBus
+                     : driver::kHidBus,
+      arm.name(), arm.vendor_id, arm.product_id, arm.product, arm.bus)};
 }
 
 }  // namespace
@@ -168,7 +226,7 @@ Result<std::optional<FoundArm>> choose_arm(const std::vector<FoundArm>& plugged_
                  " See `thimble devices`."};
   }
   if (found && !found->accessible) {
-    if (found->certainty == Certainty::kUnknown) {
+    if (found->certainty == Certainty::kUnknown || found->kind == ArmKind::kDescribed) {
       return Error{"No access to " + found->name() + " (" + found->arm +
                    "): the installed udev rule covers known arms only. `thimble doctor` prints the "
                    "line to add for this board."};
@@ -217,7 +275,12 @@ std::optional<FoundArm> find_again(const std::vector<FoundArm>& plugged_in, cons
   return std::nullopt;
 }
 
+driver::Result<std::vector<FoundArm>> find_arms(const std::filesystem::path& root) {
+  return driver::find_arms(root, described_boards());
+}
+
 Result<void> check_fits(const ArmFile& file, const FoundArm& arm) {
+  if (file.wire) return check_described(file, arm);
   if (arm.kind == ArmKind::kUnsupported) return cannot_drive(arm);
   if (std::find(file.boards.begin(), file.boards.end(), arm.board) != file.boards.end()) return {};
   std::string boards;
@@ -249,10 +312,12 @@ Result<std::unique_ptr<driver::ArmLink>> open_link(const FoundArm& arm, const Ar
     if (!library) return library.error();
     return driver::hd::open_link(*library, clock);
   }
-  auto wire = open_wire(arm, file, firmware, clock);
+  auto wire = file.wire ? driver::open_described(arm.node, *file.wire, clock, arm.usb)
+                        : open_wire(arm, file, firmware, clock);
   if (!wire) return wire.error();
-  return std::unique_ptr<driver::ArmLink>(
-      std::make_unique<driver::WireLink>(std::move(wire).value(), make_arm(arm.kind, file.model)));
+  return std::unique_ptr<driver::ArmLink>(std::make_unique<driver::WireLink>(
+      std::move(wire).value(),
+      make_arm(file.wire ? ArmKind::kDescribed : arm.kind, file.model, file.wire.get())));
 }
 
 }  // namespace thimble::scene

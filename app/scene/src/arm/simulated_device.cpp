@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "arm/report_timeout.h"
-#include "thimble/scene/device_settings.h"
+#include "thimble/driver/device.h"
+#include "thimble/scene/arm_file.h"
 
 namespace thimble::scene {
 

@@ -40,7 +40,7 @@ device_sim::WiringSettings read_wiring(YamlMap map) {
   return wiring;
 }
 
-void read_board(YamlMap& map, device_sim::SimulatedArmSettings& settings) {
+void read_board(YamlMap& map, const ArmFile& arm, device_sim::SimulatedArmSettings& settings) {
   YamlMap motors = map.require_map("motors");
   settings.motors.current_max = motors.require_number("current_max", "A", 0.01, 32);
   motors.finish();
@@ -52,6 +52,13 @@ void read_board(YamlMap& map, device_sim::SimulatedArmSettings& settings) {
   settings.firmware.current_range_mA = static_cast<std::int16_t>(
       std::lround(1000 * firmware.require_number("current_range", "A", 0.01, 32.767)));
   settings.firmware.missed_edges = firmware.optional_number("missed_edges", 0, "", 0, 1);
+  settings.firmware.reference =
+      firmware.optional_choice("board", 0, {"published", "reference"}) == 1;
+  if (settings.firmware.reference && !arm.wire) {
+    firmware.reject("board",
+                    "the reference firmware needs protocol: described, with the wire of "
+                    "app/arms/wires/reference_hid.yaml");
+  }
   firmware.finish();
   YamlMap wire = map.require_map("wire");
   settings.wire.delay_in_ns = to_ns(wire.require_number("delay_in", "s", 0, 1));
@@ -84,7 +91,8 @@ device_sim::GimbalMotion read_gimbal_motion(YamlMap map) {
 
 /// Reads how the motors heat up in the simulation. It is independent of the driver's model of their
 /// heat (section joints).
-device_sim::MotorHeatSettings read_motor_heat(YamlMap map) {
+device_sim::MotorHeatSettings read_motor_heat(YamlMap map, int motors) {
+  map.set_motors(motors);
   device_sim::MotorHeatSettings heat;
   heat.rise = map.require_number("rise", "K", 1, device_sim::MotorHeatSettings::kRiseMax);
   heat.continuous_current = map.require_vector3("continuous_current", "A", 0.001, 100);
@@ -94,11 +102,16 @@ device_sim::MotorHeatSettings read_motor_heat(YamlMap map) {
   heat.at_start =
       map.optional_vector3("at_start", {0, 0, 0}, "K", 0, device_sim::MotorHeatSettings::kRiseMax);
   map.finish();
+  for (int i = motors; i < 3; ++i) {
+    heat.continuous_current[i] = heat.continuous_current[0];
+    heat.time_constant[i] = heat.time_constant[0];
+  }
   return heat;
 }
 
 /// Reads the parts between motors and links. The plant reports combinations that are not possible.
-device_sim::DriveTrainSettings read_drive_train(YamlMap map) {
+device_sim::DriveTrainSettings read_drive_train(YamlMap map, int motors) {
+  map.set_motors(motors);
   constexpr double kTurn = 2 * std::numbers::pi;
   const auto amounts = [&map](std::string_view key, std::string_view unit, double max) {
     return map.optional_vector3(key, {0, 0, 0}, unit, 0, max);
@@ -120,7 +133,12 @@ device_sim::DriveTrainSettings read_drive_train(YamlMap map) {
   train.play = amounts("play", "rad at the joint", 0.2);
   train.viscous = amounts("viscous", "N m s/rad at the joint", 100);
   train.coulomb = amounts("coulomb", "N m at the joint", 10);
-  if (map.has("heat")) train.heat = read_motor_heat(map.require_map("heat"));
+  if (map.has("heat")) train.heat = read_motor_heat(map.require_map("heat"), motors);
+  // The drive train of a motor that the arm does not have rests; these values must not be zero.
+  for (int i = motors; i < 3; ++i) {
+    train.inertia[i] = train.inertia[0];
+    train.stiffness[i] = train.stiffness[0];
+  }
   const bool wavy = !train.cogging.isZero(0) || !train.ripple.isZero(0);
   if (wavy && train.periods_per_turn == 0) {
     map.reject("", "cogging and ripple need periods_per_turn in the same section");
@@ -169,6 +187,11 @@ device_sim::SimulatedArmSettings read_simulation(YamlMap map, const ArmFile& arm
   if (arm.is<driver::SerialArm>()) {
     settings.firmware.ideal_encoders = map.require_choice("encoders", {"quantised", "ideal"}) == 1;
   }
+  if (settings.firmware.ideal_encoders && arm.wire) {
+    map.reject("encoders",
+               "expected quantised with a described wire, whose reports have no room "
+               "for finer counts");
+  }
   if (settings.firmware.ideal_encoders && arm.model.gimbal) {
     map.reject("encoders", "expected quantised with a gimbal: the reports have no room for both");
   }
@@ -183,14 +206,17 @@ device_sim::SimulatedArmSettings read_simulation(YamlMap map, const ArmFile& arm
   settings.plant.coulomb = tip.require_number("coulomb", "N", 0, 10);
   const double weight = tip.optional_number("weight", 0, "N", 0, 10);
   settings.weight_B = arm.R_WB.transpose() * Eigen::Vector3d(0, 0, -weight);
+  if (arm.motors() < 3) {
+    settings.weight_B = settings.weight_B.cwiseProduct(driver::free_axes(arm.motors()));
+  }
   if (!arm.is<driver::DeltaArm>()) {
     if (map.has("drive_train")) {
-      settings.drive_train = read_drive_train(map.require_map("drive_train"));
+      settings.drive_train = read_drive_train(map.require_map("drive_train"), arm.motors());
     }
     if (arm.is<driver::SerialArm>() && map.has("links")) {
       settings.links = read_links(map.require_map("links"), arm);
     }
-    read_board(map, settings);
+    read_board(map, arm, settings);
   }
   tip.finish();
   YamlMap hand = map.require_map("hand");

@@ -55,7 +55,7 @@ std::string checksum_of(const fs::path& file) {
 /// geometry and signs that are code.
 std::string checksum_of_data(const ArmFile& file, driver::ArmKind kind) {
   Checksum sum;
-  const auto arm = driver::make_arm(kind, file.model);
+  const auto arm = driver::make_arm(kind, file.model, file.wire.get());
   if (arm == nullptr) {  // the rest is known only to the software of the vendor
     for (const double coordinate : file.p_WB) sum.add(coordinate, 1);
     for (const double entry : file.R_WB.reshaped()) sum.add(entry, 1);

@@ -6,6 +6,7 @@
 
 #include "energy_guard_settings.h"
 #include "thimble/driver/motion_watch.h"
+#include "wires/wire_table.h"
 
 namespace thimble::scene {
 namespace {
@@ -141,6 +142,10 @@ const char* differing_section(const ArmFile& one, const ArmFile& other) {
     return true;
   };
   if (one.protocol != other.protocol) return "protocol";
+  if ((one.wire == nullptr) != (other.wire == nullptr) ||
+      (one.wire && !(one.wire->text == other.wire->text))) {
+    return "wire";
+  }
   if (one.model.geometry.index() != other.model.geometry.index()) return "shape";
   if (one.board_model != other.board_model) return "board_model";
   if (one.is<driver::SerialArm>()) {
@@ -150,6 +155,11 @@ const char* differing_section(const ArmFile& one, const ArmFile& other) {
       return "geometry";
     }
   }
+  const auto same_as = [&]<class Geometry>(const Geometry& a) {
+    if constexpr (requires { a == a; }) return a == std::get<Geometry>(other.model.geometry);
+    return true;  // built into the program
+  };
+  if (!std::visit(same_as, one.model.geometry)) return "geometry";
   if (!same_joints()) return "joints";
   // Older arm files do not mention a gimbal. In that case the installed file decides.
   if (other.model.gimbal && one.model.gimbal != other.model.gimbal) return "gimbal";

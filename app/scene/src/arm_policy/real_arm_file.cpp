@@ -83,6 +83,9 @@ Result<Choice> choose_by_arm(const FoundArm& arm, const Calibration* calibration
     return installed_named(calibration->arm_file, "stored with its calibration in " +
                                                       calibration_file(arm.name()).string());
   }
+  if (arm.kind == ArmKind::kDescribed) {
+    return installed_named(arm.arm_file, "it describes the board " + arm.name());
+  }
   const driver::ArmRow* row = driver::row_of(arm.kind);
   if (row != nullptr && !row->own_file.empty()) {
     return installed_named(std::string(row->own_file), "the arm is a " + arm.arm);

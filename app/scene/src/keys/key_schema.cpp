@@ -102,8 +102,9 @@ std::string enum_of(const std::vector<std::string>& words) {
   return "\"enum\": [" + list.text() + ']';
 }
 
-std::string three_of(const std::string& items) {
-  return R"("type": "array", "minItems": 3, "maxItems": 3, "items": {)" + items + '}';
+std::string three_of(const std::string& items, const KeyValues& values) {
+  return fmt::format(R"("type": "array", "minItems": {}, "maxItems": 3, "items": {{{}}})",
+                     values.per_motor ? 1 : 3, items);
 }
 
 std::string range_of(std::string_view type, const KeyValues& values) {
@@ -161,7 +162,8 @@ class SchemaWriter {
  private:
   using Keys = std::vector<const KeyNote*>;
 
-  /// Value of a key that decides which other keys its map has: `friction: bristle`.
+  /// Value of a key that decides which other keys its map has: `friction: bristle`. An empty value
+  /// is any text: `law: "..."`.
   struct Variant {
     std::string key, value;
     std::string place;  ///< Place of its keys: "effects[] friction: bristle".
@@ -213,6 +215,7 @@ class SchemaWriter {
     const std::string last = dot == std::string::npos ? place : place.substr(dot + 1);
     std::vector<Variant> variants;
     for (const KeyNote* note : own_keys(place)) {
+      if (note->values.type == ValueType::kText) add_text_variant(last, *note, variants);
       if (note->values.type != ValueType::kChoice) continue;
       for (const std::string& value : note->values.choices) {
         std::string of = last + ' ' + note->key + ": " + value;
@@ -222,6 +225,18 @@ class SchemaWriter {
       }
     }
     return variants;
+  }
+
+  /// Adds the variant of a key whose value is any text, if a place has its keys: "effects[] law:
+  /// formula".
+  void add_text_variant(const std::string& last, const KeyNote& text,
+                        std::vector<Variant>& variants) const {
+    const std::string begin = last + ' ' + text.key + ": ";
+    for (const KeyNote& note : keys_) {
+      if (!note.place.starts_with(begin) || note.place.find('.') != std::string::npos) continue;
+      variants.push_back({text.key, "", note.place});
+      return;
+    }
   }
 
   bool is_redefined(const KeyNote& note, const std::vector<Variant>& variants) const {
@@ -246,8 +261,13 @@ class SchemaWriter {
       all.insert(all.end(), shared.begin(), shared.end());
       close(then, all);
       const std::string test =
-          fmt::format(R"("properties": {{{0}: {{"const": {1}}}}}, "required": [{0}])",
-                      json_quoted(variant.key), json_quoted(variant.value));
+          variant.value.empty()
+              ? fmt::format(
+                    R"("properties": {{{0}: {{"type": "string", "title": {1}}}}}, "required": [{0}])",
+                    json_quoted(variant.key),
+                    json_quoted(variant.place.substr(variant.place.rfind(": ") + 2)))
+              : fmt::format(R"("properties": {{{0}: {{"const": {1}}}}}, "required": [{0}])",
+                            json_quoted(variant.key), json_quoted(variant.value));
       parts.push_back(condition(test, then, indent));
     }
   }
@@ -317,11 +337,11 @@ class SchemaWriter {
       case ValueType::kWhole:
         return range_of("integer", note.values);
       case ValueType::kThreeNumbers:
-        return three_of(range_of("number", note.values));
+        return three_of(range_of("number", note.values), note.values);
       case ValueType::kThreeWhole:
-        return three_of(range_of("integer", note.values));
+        return three_of(range_of("integer", note.values), note.values);
       case ValueType::kSigns:
-        return three_of(R"("enum": [1, -1])");
+        return three_of(R"("enum": [1, -1])", note.values);
       case ValueType::kRotation:
         return R"("type": "array", "items": {"type": "array", "minItems": 2, "maxItems": 2, )"
                R"("prefixItems": [{"enum": ["x", "y", "z"]}, )"

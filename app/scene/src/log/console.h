@@ -2,6 +2,7 @@
 
 #include <spdlog/sinks/base_sink.h>
 
+#include <cstdio>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -18,10 +19,14 @@ class THIMBLE_EXPORT Console {
   void write(std::string_view line);
   /// Replaces the progress line; an empty one removes it.
   void show(std::string progress);
+  /// Writes printable text to a stream. If it is a terminal, the text appears above the progress
+  /// line, which disappears while the last line of the text is incomplete.
+  void print(std::FILE* stream, std::string_view text);
 
  private:
   std::mutex mutex_;
   std::string progress_;
+  bool partial_ = false;  // the last line printed at a terminal is incomplete
 };
 
 /// Returns the only console of this process.

@@ -4,10 +4,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <utility>
 
+#include "mesh/file/read_off.h"  // kCoordinateMax
+#include "mesh/file/weld_mesh.h"
+#include "mesh/repair/certainly_valid.h"
 #include "mesh/repair/orient_mesh.h"
 #include "mesh/repair/touching_parts.h"
 #include "mesh_maps.h"
@@ -126,6 +130,44 @@ driver::Result<std::string> judge_size(const SceneObject& object, const ObjectSi
                                    max_reaches, object.size ? "size (m)" : "scale")};
 }
 
+driver::Result<void> check_mesh_in_memory(const render::TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) return driver::Error{"it has no triangle; add triangles."};
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    // Written so that NaN is rejected.
+    if (mesh.vertices[i].cwiseAbs().maxCoeff() <= render::kCoordinateMax &&
+        !mesh.vertices[i].hasNaN()) {
+      continue;
+    }
+    return driver::Error{fmt::format(
+        "vertex {} has a coordinate that is not a number between -1e15 and 1e15; correct it.", i)};
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (const std::int32_t corner : mesh.triangles[i]) {
+      if (corner >= 0 && static_cast<std::size_t>(corner) < mesh.vertices.size()) continue;
+      return driver::Error{
+          fmt::format("triangle {} names vertex {}, but the vertices are 0 to {}; "
+                      "correct it.",
+                      i, corner, static_cast<std::int64_t>(mesh.vertices.size()) - 1)};
+    }
+  }
+  return {};
+}
+
+driver::Result<render::TriangleMesh> read_object_mesh(const SceneObject& object,
+                                                      render::MeshAttributes* attributes,
+                                                      render::MeshFileInfo* info) {
+  if (object.mesh) {
+    if (auto good = check_mesh_in_memory(**object.mesh); !good) {
+      return driver::Error{object.mesh_file.string() + ": mesh: " + good.error().message};
+    }
+    if (info != nullptr) info->kind = "A mesh in memory";
+    return render::weld_mesh(**object.mesh);
+  }
+  return attributes != nullptr
+             ? render::load_mesh_with_attributes(object.mesh_file, *attributes, info)
+             : render::load_mesh(object.mesh_file, info);
+}
+
 driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object) {
   const auto about = [&object](const std::string& sentence) {
     return object.mesh_file.string() + ": " + sentence;
@@ -133,9 +175,7 @@ driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object) {
   render::MeshFileInfo info;
   const bool with_maps = object.needs_maps();
   FileMesh file;
-  auto loaded = with_maps
-                    ? render::load_mesh_with_attributes(object.mesh_file, file.attributes, &info)
-                    : render::load_mesh(object.mesh_file, &info);
+  auto loaded = read_object_mesh(object, with_maps ? &file.attributes : nullptr, &info);
   if (!loaded) return loaded.error();
   ObjectMesh done;
   for (const std::string& note : info.notes) done.notes.push_back(about(note));
@@ -158,6 +198,7 @@ driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object) {
   if (!placed.scale) placed.scale = info.unit;
   done.place = placement_of(mesh, placed);
   done.mesh_W = place_mesh(mesh, placed);
+  mesh = render::TriangleMesh();  // not needed any more, and a large mesh takes much memory
   if (with_maps) {
     done.maps = maps_of(std::move(file), done.place, object.R_WO, std::move(origins));
   }
@@ -167,10 +208,13 @@ driver::Result<ObjectMesh> load_object_mesh(const SceneObject& object) {
     done.mesh_W = std::move(thick.mesh);
   }
   // Planning, drawing and contact must use the same outside.
-  const render::OrientReport turned = render::orient_mesh(done.mesh_W);
-  for (const std::string& note :
-       {render::describe(turned), render::describe(render::find_touching_parts(done.mesh_W))}) {
-    if (!note.empty()) done.notes.push_back(about(note));
+  done.is_valid = render::certainly_valid(done.mesh_W);
+  if (!done.is_valid) {
+    const render::OrientReport turned = render::orient_mesh(done.mesh_W);
+    for (const std::string& note :
+         {render::describe(turned), render::describe(render::find_touching_parts(done.mesh_W))}) {
+      if (!note.empty()) done.notes.push_back(about(note));
+    }
   }
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : done.mesh_W.vertices) box.extend(vertex);

@@ -9,6 +9,7 @@
 #include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/build_object_touch.h"
+#include "thimble/render/mesh/mesh_file.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/scene/scene_file.h"
 
@@ -76,7 +77,20 @@ struct ObjectMesh {
   std::vector<std::string> notes;  ///< Repairs, omissions and assumptions, one sentence each.
   /// Texture coordinates and vertex colours, if the object uses them.
   std::shared_ptr<const render::SurfaceMaps> maps;
+  bool is_valid = false;  ///< Whether the mesh is certainly_valid.
 };
+
+/// Fails if a mesh of a program has no triangle, names a vertex that it does not have, or has a
+/// coordinate that a mesh file may not have. Real-time: never from the servo thread.
+driver::Result<void> check_mesh_in_memory(const render::TriangleMesh& mesh);
+
+/// Returns the mesh of an object before any repair: of its file (render::load_mesh), or in memory,
+/// checked and welded in the same way. `attributes`, if not null, get texture coordinates and
+/// colours; a mesh in memory has none. The error names the file or the object. Precondition and
+/// real-time safety: as `load_object_mesh`.
+driver::Result<render::TriangleMesh> read_object_mesh(const SceneObject& object,
+                                                      render::MeshAttributes* attributes = nullptr,
+                                                      render::MeshFileInfo* info = nullptr);
 
 /// Reads the mesh file of an object, repairs it (`repair: true`), places it in the world, and makes
 /// open parts thin bodies (`open: {thickness: ...}`). The notes report parts that were inside out,

@@ -40,7 +40,8 @@ FileState state_of(const std::filesystem::path& file) {
 struct MeshKey {
   explicit MeshKey(const SceneObject& object)
       : file(std::filesystem::absolute(object.mesh_file).lexically_normal()),
-        state(state_of(file)),
+        state(object.mesh ? FileState() : state_of(file)),
+        in_memory(object.mesh ? *object.mesh : nullptr),
         size(object.size),
         scale(object.scale),
         repair(object.repair),
@@ -53,6 +54,7 @@ struct MeshKey {
 
   std::filesystem::path file;
   FileState state;
+  std::shared_ptr<const render::TriangleMesh> in_memory;
   std::optional<double> size, scale;
   bool repair;
   std::optional<double> sheet_thickness;
@@ -75,6 +77,11 @@ class MeshCache {
         .second;
   }
   std::size_t size() const { return entries_.size(); }
+  template <class Test>
+  bool any(const Test& test) const {
+    return std::any_of(entries_.begin(), entries_.end(),
+                       [&test](const auto& entry) { return test(*entry.second); });
+  }
   bool holds(const Value* value) const {
     return std::any_of(entries_.begin(), entries_.end(),
                        [value](const auto& entry) { return entry.second.get() == value; });
@@ -187,7 +194,9 @@ driver::Result<std::shared_ptr<const render::StillSurface>> SharedMeshes::surfac
     const MeshPointer& mesh_W, const render::ContactChoice& contact) {
   const std::scoped_lock lock(held_->mutex);
   if (auto found = held_->surfaces.find({mesh_W, contact})) return found;
-  auto made = render::prepare_still_surface(*mesh_W, contact);
+  const bool is_valid = held_->files.any(
+      [&mesh_W](const ObjectMesh& mesh) { return &mesh.mesh_W == mesh_W.get() && mesh.is_valid; });
+  auto made = render::prepare_still_surface(*mesh_W, contact, is_valid);
   if (!made) return made.error();
   return held_->surfaces.keep({mesh_W, contact}, std::move(made).value());
 }

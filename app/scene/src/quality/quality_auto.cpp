@@ -117,7 +117,7 @@ std::vector<Candidate> dents_for(const SceneObject& object) {
 }
 
 std::optional<double> turn_of(const SceneObject& object) {
-  auto mesh = render::load_mesh(object.mesh_file);
+  auto mesh = read_object_mesh(object);
   if (!mesh) return {};
   render::TriangleMesh placed = place_mesh(*mesh, object);
   render::orient_mesh(placed);

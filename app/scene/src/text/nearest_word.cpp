@@ -46,6 +46,14 @@ std::optional<std::string> nearest_word(std::string_view word,
     bound = apart;
     nearest = candidate;
   }
+  if (nearest || word.empty()) return nearest;
+  // The beginning of exactly one word, however long it is.
+  const auto begins = [word](const std::string& candidate) {
+    return std::string_view(candidate).starts_with(word);
+  };
+  if (std::count_if(known.begin(), known.end(), begins) == 1) {
+    nearest = *std::find_if(known.begin(), known.end(), begins);
+  }
   return nearest;
 }
 

@@ -30,6 +30,7 @@ struct KeyValues {
   double min = 0;                      ///< Smallest number, in the unit of the key.
   double max = 0;                      ///< Largest number, in the unit of the key.
   std::vector<std::string> choices{};  ///< Words, for kChoice and kChoices.
+  bool per_motor = false;  ///< True for lists of three that may have one entry per motor.
 };
 
 /// Whether a file needs a key.

@@ -17,11 +17,6 @@ namespace {
 
 constexpr std::uintmax_t kFileSizeMax = 16u << 20;  // [chosen: 150,000 objects of a line each]
 
-std::string in_file(const std::string& file, int line, const std::string& sentence) {
-  const std::string place = line > 0 ? file + ":" + std::to_string(line) : file;
-  return place + ": " + sentence + ".";
-}
-
 /// Warns the user once per process of each warning, because studies read a scene often.
 void warn_once(const std::string& warning) {
   static std::mutex mutex;
@@ -32,14 +27,26 @@ void warn_once(const std::string& warning) {
 
 }  // namespace
 
+std::string YamlMistakes::place_of(int line) const {
+  if (!places_.empty()) {
+    const auto at = static_cast<std::size_t>(std::max(line, 0));
+    return places_[at < places_.size() ? at : 0];
+  }
+  return line > 0 ? file_name_ + ":" + std::to_string(line) : file_name_;
+}
+
+std::string YamlMistakes::in_place(int line, const std::string& sentence) const {
+  return place_of(line) + ": " + sentence + ".";
+}
+
 void YamlMistakes::add_to(Kind& kind, int line, const std::string& sentence) {
   ++kind.count;
-  if (kind.sentences.size() < kKept) kind.sentences.push_back(in_file(file_name_, line, sentence));
+  if (kind.sentences.size() < kKept) kind.sentences.push_back(in_place(line, sentence));
 }
 
 void YamlMistakes::add_flaw(const TextFlaw& flaw) {
   const std::string sentence =
-      in_file(fmt::format("{}:{}:{}", file_name_, flaw.line, flaw.column), 0, flaw.what);
+      fmt::format("{}:{}:{}: {}.", file_name_, flaw.line, flaw.column, flaw.what);
   flaws_explain_all_ = flaws_explain_all_ || flaw.indents;
   const auto& known = flaws_.sentences;
   if (std::find(known.begin(), known.end(), sentence) != known.end()) return;
@@ -71,7 +78,7 @@ void YamlMistakes::add_check(int line, const std::string& sentence) {
 }
 
 void YamlMistakes::warn(int line, const std::string& sentence) {
-  warnings_.push_back(in_file(file_name_, line, sentence));
+  warnings_.push_back(in_place(line, sentence));
 }
 
 void YamlMistakes::note_file(const std::filesystem::path& file) {
@@ -114,9 +121,15 @@ driver::Result<YamlFile> YamlFile::load(const std::filesystem::path& file) {
 }
 
 driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::string& name,
-                                         KeyLog* keys) {
+                                         KeyLog* keys, std::vector<std::string> places) {
   auto mistakes = std::make_shared<YamlMistakes>(name, keys);
+  const bool from_program = !places.empty();
+  mistakes->set_places(std::move(places));
   if (const auto flaw = find_invalid_utf8(text)) {
+    if (from_program) {
+      mistakes->add(flaw->line, "a text is not UTF-8; encode it as UTF-8");
+      return driver::Error{mistakes->text()};
+    }
     return driver::Error{fmt::format("{}:{}:{}: {}.", name, flaw->line, flaw->column, flaw->what)};
   }
   mistakes->set_misplaced(find_misplaced_blanks(text));
@@ -126,7 +139,7 @@ driver::Result<YamlFile> YamlFile::parse(const std::string& text, const std::str
       mistakes->add(document.second_begins_at,
                     "expected one document, found a second one; remove it");
     } else if (document.root.is_null()) {
-      mistakes->add(0, "is empty; expected a map of keys and values");
+      mistakes->add(1, "is empty; expected a map of keys and values");
     } else {
       YamlMap root(document.root, "", 1, mistakes);
       if (mistakes->empty()) return YamlFile(std::move(root), mistakes);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -83,6 +84,11 @@ const YamlMap::Entry* YamlMap::find(std::string_view key, bool required) {
 void YamlMap::note(std::string_view key, KeyValues values, std::string what, bool required,
                    std::string fallback) {
   if (mistakes_->keys() == nullptr) return;
+  const std::size_t three = what.find("three");
+  if (motors_ != 0 && three != std::string::npos) {
+    values.per_motor = true;
+    what.replace(three, 5, "one to three");
+  }
   mistakes_->keys()->note({.place = place_,
                            .key = std::string(key),
                            .what = std::move(what),
@@ -176,8 +182,10 @@ std::int64_t YamlMap::optional_whole(std::string_view key, std::int64_t fallback
 const YamlMap::Entry* YamlMap::find_three(std::string_view key, std::string_view what) {
   const Entry* entry = find(key, true);
   if (entry == nullptr) return nullptr;
-  if (entry->value.is_list() && entry->value.size() == 3) return entry;
-  expected(*entry, "a list of three " + std::string(what));
+  if (entry->value.is_list() && entry->value.size() == list_length()) return entry;
+  constexpr std::array<std::string_view, 3> kNumbers{"one", "two", "three"};
+  expected(*entry, "a list of " + std::string(kNumbers[list_length() - 1]) + ' ' +
+                       std::string(what) + (list_length() == 3 ? "" : ", one per motor"));
   return nullptr;
 }
 
@@ -189,7 +197,7 @@ std::array<std::int64_t, 3> YamlMap::require_three_whole(std::string_view key,
        "three whole numbers, each" + what.substr(14), true);
   std::array<std::int64_t, 3> numbers{};
   const Entry* entry = find_three(key, "whole numbers");
-  for (std::size_t i = 0; entry != nullptr && i < 3; ++i) {
+  for (std::size_t i = 0; entry != nullptr && i < list_length(); ++i) {
     if (!read_whole(*entry, entry->value[i], what, min, max, numbers[i])) return {};
   }
   return numbers;
@@ -209,7 +217,7 @@ std::array<std::int64_t, 3> YamlMap::require_signs(std::string_view key) {
   note(key, {ValueType::kSigns}, "three signs, each 1 or -1", true);
   const Entry* entry = find_three(key, "signs, each 1 or -1");
   std::array<std::int64_t, 3> signs{1, 1, 1};
-  for (std::size_t i = 0; entry != nullptr && i < 3; ++i) {
+  for (std::size_t i = 0; entry != nullptr && i < list_length(); ++i) {
     const auto sign = to_whole(entry->value[i]);
     if (sign && (*sign == 1 || *sign == -1)) {
       signs[i] = *sign;
@@ -232,7 +240,7 @@ Eigen::Vector3d YamlMap::require_vector3(std::string_view key, std::string_view 
   const Entry* entry =
       find_three(key, "numbers" + (unit.empty() ? "" : " in " + std::string(unit)));
   if (entry == nullptr) return vector;
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < list_length(); ++i) {
     double number = 0;
     if (!read_number(*entry, entry->value[i], unit, min, max, number)) {
       return Eigen::Vector3d::Zero();

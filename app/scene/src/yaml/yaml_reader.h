@@ -41,6 +41,13 @@ class YamlMistakes {
   /// one is reported as that character; if it is in indentation, no other mistakes are reported.
   void set_misplaced(std::vector<TextFlaw> misplaced) { misplaced_ = std::move(misplaced); }
 
+  /// Sets names of places that messages use instead of file and line, for a text that a program
+  /// wrote: one per line (from 1), and in entry 0 that of the whole text.
+  void set_places(std::vector<std::string> places) { places_ = std::move(places); }
+
+  /// Returns the name of the place of a line: "object 2 'cube'", or the file and the line.
+  std::string place_of(int line) const;
+
   /// Returns the log of requested keys; nullptr if there is none.
   KeyLog* keys() const noexcept { return keys_; }
 
@@ -86,9 +93,11 @@ class YamlMistakes {
   };
 
   void add_to(Kind& kind, int line, const std::string& sentence);
+  std::string in_place(int line, const std::string& sentence) const;
   void add_flaw(const TextFlaw& flaw);
 
   std::string file_name_;
+  std::vector<std::string> places_;
   KeyLog* keys_;
   std::vector<TextFlaw> misplaced_;
   std::vector<std::string> warnings_;
@@ -218,6 +227,10 @@ class YamlMap {
   /// suggestion.
   void finish();
 
+  /// Makes the getters of three values expect `motors` of them (1 to 3), one per motor of the arm,
+  /// and return zeros after them (signs: ones).
+  void set_motors(int motors) { motors_ = static_cast<std::size_t>(motors); }
+
   /// Sets the place of this map in the reference of keys: "effects[] friction: bristle".
   void set_place(std::string place) { place_ = std::move(place); }
 
@@ -226,6 +239,9 @@ class YamlMap {
 
   /// Returns the first line (from 1) of this map.
   int line() const { return line_; }
+
+  /// Returns the place of this map as in messages (YamlMistakes::place_of).
+  std::string name_of_place() const { return mistakes_->place_of(line_); }
 
  private:
   struct Entry {
@@ -244,6 +260,7 @@ class YamlMap {
                    double max, double& number);
   bool read_whole(const Entry& entry, const YamlNode& node, const std::string& what,
                   std::int64_t min, std::int64_t max, std::int64_t& number);
+  std::size_t list_length() const noexcept { return motors_ == 0 ? 3 : motors_; }
   const Entry* find_three(std::string_view key, std::string_view what);
   int line_for(std::string_view key);
 
@@ -253,7 +270,8 @@ class YamlMap {
   std::shared_ptr<YamlMistakes> mistakes_;
   int line_ = 0;
   std::string place_;
-  bool quiet_ = false;  // The map could not be read, so its keys are not reported.
+  std::size_t motors_ = 0;  // Length of lists with one value per motor; 0: lists have three.
+  bool quiet_ = false;      // The map could not be read, so its keys are not reported.
 };
 
 /// YAML file whose root is a map.
@@ -264,9 +282,10 @@ class THIMBLE_EXPORT YamlFile {
   static driver::Result<YamlFile> load(const std::filesystem::path& file);
 
   /// Parses YAML from a text; `name` is used as the file name in messages. `keys`, if not null,
-  /// logs the requested keys.
+  /// logs the requested keys. `places`, if not empty: see YamlMistakes::set_places.
   static driver::Result<YamlFile> parse(const std::string& text, const std::string& name,
-                                        KeyLog* keys = nullptr);
+                                        KeyLog* keys = nullptr,
+                                        std::vector<std::string> places = {});
 
   /// Returns the root map.
   YamlMap& root() { return root_; }

@@ -32,6 +32,10 @@ void YamlSettings::choice(std::string_view key, std::size_t& value,
   value = map_.optional_choice(key, value, names);
 }
 
+void YamlSettings::text(std::string_view key, std::string& value) {
+  value = !key_.empty() && key == key_ ? text_ : map_.optional_string(key, value);
+}
+
 void YamlSettings::file(std::string_view key, std::filesystem::path& value) {
   const std::string name = map_.require_string(key);
   if (name.empty()) return;

@@ -1,4 +1,4 @@
-#include "thimble/session/figure.h"
+#include "thimble/session/run_figures.h"
 
 #include <sstream>
 

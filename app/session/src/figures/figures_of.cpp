@@ -55,6 +55,8 @@ RunFigures figures_of(const Setup& setup, std::size_t arm, const RunRecords& rec
   figures.wire = device.wire_counters();
   figures.gate = device.gate_counters();
   figures.walls = device.wall_counters();
+  figures.motors = setup.arm_file(arm).motors();
+  figures.missing_force = device.missing_force();
   figures.energy_stage = device.gate().energy_stage();
   figures.reopen = device.gate().limits().reopen;
   figures.carried_weight = setup.arm_file(arm).max_carried_force;

@@ -128,6 +128,15 @@ std::string summary(const RunFigures& report) {
         scene::counted(report.walls.pushed, "tick"), report.walls.f_strongest_W.norm(),
         wall_side(report.walls.f_strongest_W));
   }
+  if (report.motors < 3) {
+    const Eigen::Vector3d& f_W = report.missing_force.f_strongest_W;
+    s += fmt::format(
+        "Axes      the arm has {}: its tip stays {}. In {} a part of the force could not be given, "
+        "at most {:.2f} N ({:.2f}, {:.2f}, {:.2f}).\n",
+        scene::counted(static_cast<std::uint64_t>(report.motors), "motor"),
+        report.motors == 1 ? "on a line" : "in a plane",
+        scene::counted(report.missing_force.ticks, "tick"), f_W.norm(), f_W.x(), f_W.y(), f_W.z());
+  }
   if (report.energy_stage == driver::EnergyStage::kPassivity) {
     s += fmt::format(
         "Gate      passivity: at most {:.2f} mJ given beyond the energy taken; damping in {}.\n",

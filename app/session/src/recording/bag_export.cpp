@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bag/write_bag.h"
+#include "log/progress.h"
 
 namespace thimble::session {
 
@@ -35,7 +36,9 @@ driver::Result<void> export_bag(const Recording& recording, const std::filesyste
     sent.messages.push_back({.time_ns = tick.time_ns, .value = vector(tick.f_sent_W)});
     wanted.messages.push_back({.time_ns = tick.time_ns, .value = vector(tick.f_wanted_W)});
   }
-  return bag::write_bag(folder, {std::move(poses), std::move(sent), std::move(wanted)});
+  scene::Progress progress("bag");
+  return bag::write_bag(folder, {std::move(poses), std::move(sent), std::move(wanted)},
+                        [&progress](double share) { progress.set_share(share); });
 }
 
 }  // namespace thimble::session

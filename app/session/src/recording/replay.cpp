@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "files/file_hashes.h"
+#include "log/progress.h"
 #include "recording/replay_watch.h"
 #include "recording/replayed_law.h"
 #include "recording/run_choices.h"
@@ -103,6 +104,8 @@ Replay begin_replay(const Recording& recording, const scene::Scene& scene,
   return replay;
 }
 
+constexpr const char* kProgressName = "replay";
+
 /// Passes the arm's state of one tick to the scene's force law, and compares the result with the
 /// recording. An arm in fault felt nothing, so nothing is computed.
 void replay_tick(const Recording& recording, std::size_t i, ReplayedLaw& law, Replay& replay) {
@@ -198,7 +201,9 @@ driver::Result<Replay> replay_single(const Recording& recording, const std::stri
 
   Replay replay = begin_replay(recording, *scene, *file);
   ReplayedLaw law(recording, *scene, scene->arms.front().arm, (*objects)->touch());
+  scene::Progress progress(kProgressName);
   for (std::size_t i = 0; i < recording.ticks.size(); ++i) {
+    progress.set_share(i + 1, recording.ticks.size());
     replay_tick(recording, i, law, replay);
     (*objects)->serve_pages();
     if (watch != nullptr) watch->take(replay.felt.ticks.back());
@@ -246,7 +251,9 @@ driver::Result<std::vector<Replay>> replay_together(std::span<const Recording> r
                                                  scene->arms[arm].arm, (*objects)->touch(arm)));
   }
   const double period = 1 / recordings.front().info.rate;
+  scene::Progress progress(kProgressName);
   for (std::size_t i = 0; i < recordings.front().ticks.size(); ++i) {
+    progress.set_share(i + 1, recordings.front().ticks.size());
     // Same order as in the run: each arm in the scene's order, then the bodies.
     for (std::size_t arm = 0; arm < order->size(); ++arm) {
       const std::size_t k = (*order)[arm];

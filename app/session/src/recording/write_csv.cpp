@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string>
 
+#include "log/progress.h"
 #include "output/output_file.h"
 
 namespace thimble::session {
@@ -63,7 +64,10 @@ driver::Result<void> write_csv(const Recording& recording, const std::filesystem
   constexpr std::size_t kPiece = std::size_t{1} << 16;
   std::string text = heading() + '\n';
   std::string line;
+  scene::Progress progress("table");
+  std::size_t done = 0;
   for (const driver::TickRecord& tick : recording.ticks) {
+    progress.set_share(++done, recording.ticks.size());
     line.clear();
     for (const RecordingColumn& column : recording_columns()) {
       const auto* from = reinterpret_cast<const unsigned char*>(&tick) + column.offset;

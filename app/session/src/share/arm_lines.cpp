@@ -38,10 +38,9 @@ std::vector<ArmLine> lines_of(const driver::DeltaArm& arm, const Vector3d& q,
   std::vector<ArmLine> lines(1);
   ArmLine base, plate;
   for (std::size_t leg = 0; leg < 3; ++leg) {
-    const double azimuth = arm.azimuth[leg];
     const double angle = q[static_cast<Eigen::Index>(leg)];
-    const Vector3d u(math::cos(azimuth), math::sin(azimuth), 0);
-    const Vector3d v(-math::sin(azimuth), math::cos(azimuth), 0);
+    const Vector3d u(arm.outwards[leg].x(), arm.outwards[leg].y(), 0);
+    const Vector3d v(-u.y(), u.x(), 0);
     const Vector3d joint = arm.r * u + arm.s * v;
     const Vector3d elbow =
         joint + arm.a * (math::cos(angle) * u + math::sin(angle) * Vector3d::UnitZ());
@@ -61,6 +60,25 @@ std::vector<ArmLine> lines_of(const driver::DeltaArm& arm, const Vector3d& q,
 /// Returns only the tip for an arm of unknown geometry.
 std::vector<ArmLine> lines_of(const driver::VendorPoseArm&, const Vector3d&, const Vector3d& p_BT) {
   return {{p_BT}};
+}
+
+/// Returns the handle from its pivot, which is drawn on the y axis of the base: the tip's line is
+/// its arc, straightened.
+std::vector<ArmLine> lines_of(const driver::PaddleArm& arm, const Vector3d&, const Vector3d& p_BT) {
+  return {{Vector3d(0, -arm.handle, 0), p_BT}};
+}
+
+std::vector<ArmLine> lines_of(const driver::FiveBarArm& arm, const Vector3d& q,
+                              const Vector3d& p_BT) {
+  const Vector3d motor(arm.base / 2, 0, 0);
+  const Vector3d elbow_1 = arm.crank_1 * Vector3d(math::cos(q[0]), math::sin(q[0]), 0) - motor;
+  const Vector3d elbow_2 = arm.crank_2 * Vector3d(math::cos(q[1]), math::sin(q[1]), 0) + motor;
+  return {{-motor, elbow_1, p_BT, elbow_2, motor}};
+}
+
+/// Returns the rails from the origin of the base, one after the other.
+std::vector<ArmLine> lines_of(const driver::CartesianArm&, const Vector3d&, const Vector3d& p_BT) {
+  return {{Vector3d::Zero(), {p_BT.x(), 0, 0}, {p_BT.x(), p_BT.y(), 0}, p_BT}};
 }
 
 }  // namespace

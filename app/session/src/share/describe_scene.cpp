@@ -59,6 +59,30 @@ void describe_map(const scene::Scene& scene, const scene::SceneObjects& objects,
   described.map_values.insert(described.map_values.end(), map->values.begin(), map->values.end());
 }
 
+// Adds the shape with which an object collides, if it meets others.
+void describe_collider(const scene::SceneObjects& objects, std::size_t i, SharedScene& described) {
+  SharedScene::Object& object = described.objects[i];
+  const auto shape_W = objects.collision_mesh_W(i);
+  if (shape_W == nullptr) return;
+  object.collider_first_vertex = object.first_vertex;
+  object.collider_vertex_count = object.vertex_count;
+  object.collider_first_triangle = object.first_triangle;
+  object.collider_triangle_count = object.triangle_count;
+  if (shape_W == objects.shared_mesh_W(i)) return;
+  object.collider_first_vertex = described.vertices.size();
+  object.collider_vertex_count = shape_W->vertices.size();
+  object.collider_first_triangle = described.triangles.size();
+  object.collider_triangle_count = shape_W->triangles.size();
+  const auto first = static_cast<std::uint32_t>(described.vertices.size());
+  described.vertices.insert(described.vertices.end(), shape_W->vertices.begin(),
+                            shape_W->vertices.end());
+  for (const auto& [a, b, c] : shape_W->triangles) {
+    described.triangles.push_back({first + static_cast<std::uint32_t>(a),
+                                   first + static_cast<std::uint32_t>(b),
+                                   first + static_cast<std::uint32_t>(c)});
+  }
+}
+
 // Returns the largest number of edges of an object that may be split during the run.
 std::size_t max_splits(const scene::SceneObject& object, const render::ObjectTouch& touch) {
   return object.body.shape.named() && touch.shape()->refines() ? touch.shape()->splits_left() : 0;
@@ -99,6 +123,7 @@ SharedScene describe_scene(const scene::Scene& scene, const scene::SceneObjects&
                                  .texture = names_of(object, "texture"),
                                  .friction = names_of(object, "friction")});
     describe_map(scene, objects, i, described);
+    describe_collider(objects, i, described);
   }
   described.field = sample_fields(scene);
   return described;

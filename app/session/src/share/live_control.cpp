@@ -5,6 +5,8 @@
 #include <limits>
 #include <thread>
 
+#include "hold_key.h"
+
 namespace thimble::session {
 
 LiveControl::LiveControl(const scene::Scene& scene, render::SceneTouch& touch,
@@ -52,6 +54,7 @@ void LiveControl::take(const driver::TickRecord& record) noexcept {
     }
   }
   if (hand_by_mouse_ && simulation_ != nullptr) lead_hand();
+  if (simulation_ != nullptr) hold_buttons(record.time_ns);
   if (paused_ && !real_time_) wait_while_paused();
   if (pace_ == nullptr) return;
   if (const auto speed = shared_->speed_wanted()) pace_->set_speed(*speed);
@@ -62,6 +65,19 @@ void LiveControl::lead_hand() noexcept {
   if (!shared_->hand(asked) || asked.p_WH == hand_.p_WH) return;
   hand_ = asked;
   simulation_->lead(Eigen::Map<const Eigen::Vector3d>(asked.p_WH.data()));
+}
+
+// A viewer that is closed or hangs draws no pictures; its buttons are then released.
+void LiveControl::hold_buttons(std::int64_t now_ns) noexcept {
+  const std::uint64_t asked = shared_->buttons_asked();
+  if (asked != buttons_) {
+    buttons_ = asked;
+    buttons_until_ns_ = now_ns + HeldKey::kLasts_ns;
+  } else if ((asked & 0xffffU) == 0 || now_ns <= buttons_until_ns_) {
+    return;
+  }
+  const bool held = now_ns <= buttons_until_ns_;
+  simulation_->hold_buttons(held ? static_cast<std::uint16_t>(asked & 0xffffU) : std::uint16_t{0});
 }
 
 void LiveControl::wait_while_paused() noexcept {

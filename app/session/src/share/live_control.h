@@ -18,8 +18,9 @@
 
 namespace thimble::session {
 
-/// Executes requests of viewers on the servo's thread: knobs, pause, and the target of the hand
-/// moved by the mouse. Two stages of the force law of a shared run (RunLaw).
+/// Executes requests of viewers on the servo's thread: knobs, pause, buttons of a simulated arm,
+/// and the target of the hand moved by the mouse. Two stages of the force law of a shared run
+/// (RunLaw).
 ///
 /// Pause in real time: the loop continues, the force fades out within kFade, and the simulated hand
 /// stops. Afterwards the force fades in again. In virtual time, paced or not, the loop itself
@@ -63,6 +64,7 @@ class LiveControl final : public TickObserver {
 
  private:
   void lead_hand() noexcept;
+  void hold_buttons(std::int64_t now_ns) noexcept;
   void wait_while_paused() noexcept;
 
   scene::ArmSimulation* simulation_;
@@ -80,6 +82,8 @@ class LiveControl final : public TickObserver {
   LawChange change_;
   KnobTick last_;
   SharedHand hand_;
+  std::uint64_t buttons_ = 0;  // last request of buttons
+  std::int64_t buttons_until_ns_ = 0;
 };
 
 }  // namespace thimble::session

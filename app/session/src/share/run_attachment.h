@@ -24,6 +24,9 @@ class THIMBLE_EXPORT RunAttachment {
   SharedReader* reader() noexcept { return reader_.get(); }
   const std::string& name() const noexcept { return name_; }
 
+  /// Returns why a run of the name cannot be read; empty if there is no problem.
+  const std::string& error() const noexcept { return error_; }
+
   /// Returns whether the run has ended and is not about to restart.
   bool over() const;
 

@@ -28,6 +28,8 @@ driver::Result<std::unique_ptr<SharedRun>> share_run(const Setup& setup, const L
   SharedScene scene = describe_scene(setup.scene(), setup.objects(), devices);
   scene.file = setup.scene_path();
   scene.period_ns = setup.period_ns();
+  scene.duration =
+      1e-9 * static_cast<double>(setup.period_ns()) * static_cast<double>(setup.ticks());
   scene.wall_clock = setup.real_time();
   scene.hand_by_mouse = setup.hand_by_mouse();
   scene.hold_by_key = setup.hold().by_caller;

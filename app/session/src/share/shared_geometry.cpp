@@ -18,11 +18,24 @@ std::vector<double*> numbers_of(driver::LinkageArm& g) {
   return {&g.length_0, &g.length_1, &g.length_2, &g.length_3, &g.length_4, &g.length_5};
 }
 std::vector<double*> numbers_of(driver::DeltaArm& g) {
-  return {&g.a, &g.b, &g.c,          &g.d,          &g.e,         &g.f,
-          &g.r, &g.s, &g.azimuth[0], &g.azimuth[1], &g.azimuth[2]};
+  std::vector<double*> numbers{&g.a, &g.b, &g.c, &g.d, &g.e, &g.f, &g.r, &g.s};
+  for (Eigen::Vector2d& outwards : g.outwards) {
+    numbers.insert(numbers.end(), {&outwards.x(), &outwards.y()});
+  }
+  return numbers;
 }
 std::vector<double*> numbers_of(driver::VendorPoseArm&) {
   return {};
+}
+
+std::vector<double*> numbers_of(driver::PaddleArm& g) {
+  return {&g.handle};
+}
+std::vector<double*> numbers_of(driver::FiveBarArm& g) {
+  return {&g.base, &g.crank_1, &g.crank_2, &g.distal_1, &g.distal_2};
+}
+std::vector<double*> numbers_of(driver::CartesianArm& g) {
+  return {&g.radius[0], &g.radius[1], &g.radius[2]};
 }
 
 std::vector<double*> numbers_of(driver::ArmGeometry& geometry) {

@@ -90,7 +90,7 @@ struct SharedArm {
   SharedText<64> in_scene{};  ///< Name in a scene with several arms.
   std::uint32_t shape = 0;    ///< Geometry: see shared_geometry.h.
   std::uint32_t unused = 0;
-  std::array<double, 12> numbers{};  ///< Parameters of the geometry, m, rad.
+  std::array<double, 14> numbers{};  ///< Parameters of the geometry, m, rad.
   std::array<double, 9> R_WB{};      ///< Rotation of the base in the world, row by row.
   std::array<double, 3> p_WB{};      ///< Position of the base, m.
   std::array<double, 3> min_W{};     ///< Minimum corner of the workspace, m.
@@ -110,6 +110,7 @@ struct SharedHead {
   std::int64_t period_ns = 0;       ///< Period of the loop, ns.
   double force_max = 0;             ///< Force limit of the gate, N.
   double tip_radius = 0;            ///< Radius of a tip that is a ball, m; 0: a point.
+  double duration = 0;              ///< Planned duration, s.
   std::uint32_t wall_clock = 0;     ///< 1: in real time; 0: as fast as it computes.
   std::uint32_t hand_by_mouse = 0;  ///< 1: a viewer moves the simulated hand.
   std::uint32_t paced = 0;          ///< 1: simulated time, at a pace chosen by viewers.
@@ -140,6 +141,9 @@ struct SharedObject {
   std::uint32_t map_parts = 0;  ///< Parts of each side of a triangle; 0: it has no map.
   std::uint64_t first_vertex = 0, vertex_count = 0;
   std::uint64_t first_triangle = 0, triangle_count = 0;
+  /// Ranges of the shape that collides, in the same tables; without triangles: it meets nothing.
+  std::uint64_t collider_first_vertex = 0, collider_vertex_count = 0;
+  std::uint64_t collider_first_triangle = 0, collider_triangle_count = 0;
   /// Index in the table `shaped`; one entry per vertex and split.
   std::uint64_t first_shaped = 0;
   std::uint64_t first_split = 0, max_splits = 0;  ///< Range in the table `splits`.
@@ -220,6 +224,9 @@ struct SharedRequests {
   std::atomic<std::uint32_t> loop;  ///< 1: restart when the run ends; 0: do not.
   /// Incremented with each picture drawn while a key is held in a viewer's window (HoldToRun).
   std::atomic<std::uint64_t> key_held;
+  /// Buttons of the simulated arm that keys of a viewer hold: one bit each in the lower 16 bits;
+  /// the other bits count the pictures drawn while one is held.
+  std::atomic<std::uint64_t> buttons;
   /// Multiple of real time; invalid values are ignored.
   std::atomic<double> speed;
   /// Incremented by the number of ticks that a paused run may advance.

@@ -132,6 +132,14 @@ class THIMBLE_EXPORT SharedReader {
   /// Reports that the key of the enabling input is held; call it with each picture while it is.
   void hold_key() noexcept { live_->requests.key_held.fetch_add(1, std::memory_order_relaxed); }
 
+  /// Holds buttons of the simulated arm (one bit each; bit 0 is the first); call it with each
+  /// picture while one is held, and with 0 once they are released.
+  void hold_buttons(std::uint16_t buttons) noexcept {
+    const std::uint64_t before = live_->requests.buttons.load(std::memory_order_relaxed);
+    live_->requests.buttons.store(((before >> 16U) + 1U) << 16U | buttons,
+                                  std::memory_order_relaxed);
+  }
+
   /// Returns the number of invalid values read from the memory.
   std::uint64_t rejected() const noexcept { return rejected_; }
 

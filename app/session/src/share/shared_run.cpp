@@ -135,6 +135,7 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
   head_->period_ns = period_ns_ = scene.period_ns;
   head_->force_max = scene.force_max;
   head_->tip_radius = scene.tip_radius;
+  head_->duration = scene.duration;
   head_->wall_clock = scene.wall_clock ? 1 : 0;
   head_->hand_by_mouse = scene.hand_by_mouse ? 1 : 0;
   head_->hold_by_key = scene.hold_by_key ? 1 : 0;
@@ -163,6 +164,10 @@ void SharedRun::write(const SharedScene& scene, std::size_t ring_ticks) {
     to.vertex_count = object.vertex_count;
     to.first_triangle = object.first_triangle;
     to.triangle_count = object.triangle_count;
+    to.collider_first_vertex = object.collider_first_vertex;
+    to.collider_vertex_count = object.collider_vertex_count;
+    to.collider_first_triangle = object.collider_first_triangle;
+    to.collider_triangle_count = object.collider_triangle_count;
     to.first_shaped = shaped;
     to.first_split = splits;
     if (object.shaped) {

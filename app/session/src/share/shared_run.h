@@ -91,6 +91,11 @@ class SharedRun final : public KnobRequests {
   std::uint64_t key_held() const noexcept {
     return live_->requests.key_held.load(std::memory_order_relaxed);
   }
+  /// Returns the buttons that a viewer's keys hold, in the lower 16 bits. The number changes with
+  /// each picture drawn while one is held. Its value is arbitrary.
+  std::uint64_t buttons_asked() const noexcept {
+    return live_->requests.buttons.load(std::memory_order_relaxed);
+  }
   /// Returns the requested speed as a multiple of real time; empty if it is invalid.
   std::optional<double> speed_wanted() const noexcept;
   /// Returns the total number of steps requested for a paused run. Its value is arbitrary.

@@ -103,13 +103,32 @@ bool take_map(const SharedObject& shared, const SharedHead& head, SharedScene::M
   return true;
 }
 
+/// Returns whether a range of triangles exists and refers to a range of vertices only.
+bool sound_surface(std::uint64_t first_vertex, std::uint64_t vertex_count,
+                   std::uint64_t first_triangle, std::uint64_t triangle_count,
+                   const SharedHead& head, const std::vector<SharedTriangle>& triangles) {
+  if (!within(first_vertex, vertex_count, head.vertices.count) ||
+      !within(first_triangle, triangle_count, head.triangles.count)) {
+    return false;
+  }
+  for (std::uint64_t t = 0; t < triangle_count; ++t) {
+    for (const std::uint32_t vertex : triangles[first_triangle + t]) {
+      if (vertex < first_vertex || vertex - first_vertex >= vertex_count) return false;
+    }
+  }
+  return true;
+}
+
 /// Validates an object against the tables to which it refers.
 bool take_object(const SharedObject& shared, const SharedHead& head,
                  const std::vector<SharedTriangle>& triangles, SharedScene::Object& object) {
   if (shared.kind > static_cast<std::uint32_t>(SharedKind::kPaged) || shared.moves > 1 ||
       shared.dents > 1 || shared.shaped > 1 || !std::isfinite(shared.crease_angle) ||
-      !within(shared.first_vertex, shared.vertex_count, head.vertices.count) ||
-      !within(shared.first_triangle, shared.triangle_count, head.triangles.count)) {
+      !sound_surface(shared.first_vertex, shared.vertex_count, shared.first_triangle,
+                     shared.triangle_count, head, triangles) ||
+      !sound_surface(shared.collider_first_vertex, shared.collider_vertex_count,
+                     shared.collider_first_triangle, shared.collider_triangle_count, head,
+                     triangles)) {
     return false;
   }
   if (!within(shared.first_split, shared.max_splits, head.splits.count)) return false;
@@ -117,13 +136,6 @@ bool take_object(const SharedObject& shared, const SharedHead& head,
   if (shared.shaped == 1 ? !within(shared.first_shaped, room, head.shaped.count)
                          : shared.max_splits > 0) {
     return false;
-  }
-  for (std::uint64_t t = 0; t < shared.triangle_count; ++t) {
-    for (const std::uint32_t vertex : triangles[shared.first_triangle + t]) {
-      if (vertex < shared.first_vertex || vertex - shared.first_vertex >= shared.vertex_count) {
-        return false;
-      }
-    }
   }
   object = {.name = text_of(shared.name),
             .kind = static_cast<SharedKind>(shared.kind),
@@ -135,6 +147,10 @@ bool take_object(const SharedObject& shared, const SharedHead& head,
             .vertex_count = shared.vertex_count,
             .first_triangle = shared.first_triangle,
             .triangle_count = shared.triangle_count,
+            .collider_first_vertex = shared.collider_first_vertex,
+            .collider_vertex_count = shared.collider_vertex_count,
+            .collider_first_triangle = shared.collider_first_triangle,
+            .collider_triangle_count = shared.collider_triangle_count,
             .first_shaped = shared.first_shaped,
             .first_split = shared.first_split,
             .max_splits = shared.max_splits,
@@ -272,6 +288,7 @@ driver::Result<SharedScene> read_shared_scene(std::span<const std::byte> memory)
   scene.period_ns = head.period_ns;
   scene.force_max = head.force_max;
   scene.tip_radius = head.tip_radius;
+  scene.duration = std::isfinite(head.duration) && head.duration > 0 ? head.duration : 0;
   scene.wall_clock = head.wall_clock == 1;
   scene.hand_by_mouse = head.hand_by_mouse == 1;
   scene.hold_by_key = head.hold_by_key == 1;

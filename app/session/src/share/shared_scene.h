@@ -36,6 +36,10 @@ struct SharedScene {
     bool shaped = false;  ///< True if SharedReader::shape returns its current mesh.
     std::size_t first_vertex = 0, vertex_count = 0;
     std::size_t first_triangle = 0, triangle_count = 0;
+    /// Ranges of the shape with which it collides, at its first place; without triangles: it meets
+    /// nothing. They may be its own.
+    std::size_t collider_first_vertex = 0, collider_vertex_count = 0;
+    std::size_t collider_first_triangle = 0, collider_triangle_count = 0;
     std::size_t first_shaped = 0;
     /// Range of its edge splits; max_splits is 0 if its triangles never change.
     std::size_t first_split = 0, max_splits = 0;
@@ -73,6 +77,7 @@ struct SharedScene {
   std::int64_t period_ns = 0;  ///< Period of the loop, ns; > 0.
   double force_max = 0;        ///< Force limit of the gate, N.
   double tip_radius = 0;       ///< Radius of a tip that is a ball, m; 0: a point.
+  double duration = 0;         ///< Planned duration, s; 0: unknown.
   bool wall_clock = false;
   bool hand_by_mouse = false;
   /// True if a key must be held to get forces (HoldToRun).

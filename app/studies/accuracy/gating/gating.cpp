@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "log/progress.h"
 #include "report/picture_style.h"
 #include "studies/accuracy/probed_stroke.h"
 #include "thimble/scene/arm_simulation.h"
@@ -92,9 +93,14 @@ std::optional<double> instructions_per_tick_of(const std::string& kind,
   return counts->front() / ticks;
 }
 
+// Shares of the time after the first run, all compared runs and the timed ones; the rest is
+// counting [chosen].
+constexpr double kRunShare = 0.02, kRunsShare = 0.1, kTimedShare = 0.2;
+
 }  // namespace
 
 driver::Result<GatingReport> decide_gating(const std::filesystem::path& scene, bool count) {
+  scene::Progress progress("study gating");
   const auto meshes = std::make_shared<scene::SharedMeshes>();
   auto session = open_with(scene, {}, meshes);
   if (!session) return session.error();
@@ -102,6 +108,7 @@ driver::Result<GatingReport> decide_gating(const std::filesystem::path& scene, b
   const double ticks = static_cast<double>((*session)->setup().ticks());
   const std::atomic<bool> stop{false};
   (*session)->run(stop);
+  progress.set_share(kRunShare);
   const auto full = (*session)->ticks();
   const RunObservations seen = look_at(full, 1 / (*session)->scene().rate);
   GatingReport report;
@@ -125,13 +132,17 @@ driver::Result<GatingReport> decide_gating(const std::filesystem::path& scene, b
   if (!rows) return rows.error();
   report.change = compare(full, *rows);
   report.holds = report.change <= kShareFelt;
+  progress.set_share(kRunsShare);
   const auto times = time_both(scene, reduced, meshes);
   if (!times) return times.error();
   report.full_ns = times->first;
   report.reduced_ns = times->second;
+  progress.set_share(count ? kTimedShare : 1.0);
   if (count) {
     report.full_instructions = instructions_per_tick_of("full", scene, ticks);
+    progress.set_share((1 + kTimedShare) / 2);
     report.reduced_instructions = instructions_per_tick_of("reduced", scene, ticks);
+    progress.set_share(1.0);
   }
   return report;
 }

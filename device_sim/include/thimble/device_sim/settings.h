@@ -3,12 +3,19 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "thimble/driver/board.h"
 #include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 
+namespace thimble::driver {
+struct WireTable;
+}
+
 namespace thimble::device_sim {
+
+class ReferenceProgram;
 
 // Constants of the simulated arm. app/arms/*.yaml gives each with its unit and source. A default of
 // zero means "not simulated".
@@ -176,6 +183,15 @@ struct THIMBLE_EXPORT WiringSettings {
   }
 };
 
+/// Supply and temperature that a simulated board with the reference firmware measures [chosen:
+/// those of a sound arm], and its lowest supply [chosen: half of it].
+struct BoardHealth {
+  std::uint16_t supply_mV = 24'000;   ///< Supply of the motors, mV.
+  std::int16_t temperature_dC = 250;  ///< Highest temperature, 0.1 degrees C.
+  bool encoder_error = false;         ///< An encoder reports an error.
+};
+inline constexpr std::uint16_t kReferenceSupplyMin_mV = 12'000;  ///< Lowest supply, mV.
+
 /// Firmware of the board. Sources of the defaults: app/guide/pages/simulated_arm.md.
 struct FirmwareSettings {
   std::int64_t report_period_ns = 1'000'000;  ///< Period of the reports, ns.
@@ -184,13 +200,21 @@ struct FirmwareSettings {
   /// Largest current, mA; a larger one is replaced by zero [S, DEVICES 1; the value is a guess].
   std::int16_t current_range_mA = 6000;
   WiringSettings wiring;  ///< Wiring, possibly with dead or swapped lines.
-  /// Protocol: kPolhem, kWoody or kHfabLine.
+  /// Protocol: kPolhem, kWoody, kHfabLine or kDescribed.
   driver::ArmKind protocol = driver::ArmKind::kPolhem;
   std::int32_t line_model = 1;  ///< Model number of the arm in text lines [S hfabapi].
   /// True for encoders with 65536 times the resolution, below a nanometre at the tip, to measure
   /// the effect of real ones. Their counts fit only into the 14-byte protocol
   /// (hfab::FineReportWire), which then replaces `protocol`, without a gimbal.
   bool ideal_encoders = false;
+  /// True for a board that runs the reference firmware (driver/firmware), which then determines the
+  /// messages in both directions; `protocol` is the host's description of them.
+  bool reference = false;
+  /// Runs the reference firmware elsewhere, for example on an emulated processor. Null: in this
+  /// process. Not owned; must outlive the arm.
+  ReferenceProgram* program = nullptr;
+  /// Wire of the protocol kDescribed, otherwise null.
+  std::shared_ptr<const driver::WireTable> described{};
   double missed_edges = 0;  ///< Probability that a counter misses a step of its encoder, 0 to 1.
 };
 

@@ -23,6 +23,9 @@ struct ArmTraits {
   /// True if the encoders count from zero at the pose in which the arm's board starts
   /// (Arm::zero_at_power_on).
   bool zero_at_power_on = false;
+  /// Number of axes of the base along which the tip can move and forces act: the first, the first
+  /// two, or all three. Less than 3 for an arm with one or two motors.
+  int axes = 3;
   /// Motors for which the link converts forces into currents; requires joints. If empty, the arm
   /// takes a force, and the host does not know currents, limits or heat of its motors.
   std::optional<std::array<MotorDrive, 3>> motors{};

@@ -21,13 +21,14 @@ enum class BoardKind : std::uint8_t {
   kHaplyService,    ///< Haply's service on this computer.
   kDhdLibrary,      ///< Force Dimension's library.
   kHdLibrary,       ///< OpenHaptics' library.
+  kDescribed,       ///< A board that an installed arm file describes (its section `wire`).
   kOther,           ///< A board that no known arm uses; never opened.
 };
 
 /// Names of the board kinds in arm files and messages, in the order of BoardKind. kOther has none.
-inline constexpr std::array<std::string_view, 8> kBoardNames = {
-    "mbed_hid_8",  "mbed_hid_14",   "teensy_raw_hid_64", "text_lines",
-    "falcon_ftdi", "haply_service", "dhd_library",       "hd_library"};
+inline constexpr std::array<std::string_view, 9> kBoardNames = {
+    "mbed_hid_8",    "mbed_hid_14", "teensy_raw_hid_64", "text_lines", "falcon_ftdi",
+    "haply_service", "dhd_library", "hd_library",        "described"};
 
 /// Returns the name of a board kind, "other" for kOther. Real-time: safe.
 constexpr std::string_view name(BoardKind board) noexcept {
@@ -44,6 +45,7 @@ enum class ArmKind : std::uint8_t {
   kHaply,        ///< Haply Inverse3: JSON messages of its service.
   kDhd,          ///< Force Dimension's arms: calls of their library.
   kHd,           ///< Touch and PHANTOM arms: calls of the library of OpenHaptics.
+  kDescribed,    ///< An arm whose file describes its wire: a table instead of code.
   kUnsupported,  ///< Not supported by Thimble.
 };
 

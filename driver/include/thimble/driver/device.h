@@ -58,6 +58,14 @@ struct WallCounters {
   Eigen::Vector3d f_strongest_W{0, 0, 0};  ///< Largest force of the walls, N.
 };
 
+/// Force that an arm with one or two motors could not give: the part across the line or plane of
+/// its tip, of the forces of laws and walls. Zero for other arms.
+struct MissingForce {
+  std::uint64_t ticks = 0;                 ///< Number of ticks with such a part.
+  Eigen::Vector3d f_W{0, 0, 0};            ///< The part in the last of these ticks, N.
+  Eigen::Vector3d f_strongest_W{0, 0, 0};  ///< The largest part, N.
+};
+
 /// Enabling inputs. An arm gets a force only while a person holds all inputs that are set. By
 /// default none is set.
 struct HoldToRun {
@@ -255,6 +263,8 @@ class THIMBLE_EXPORT Device {
   const GateCounters& gate_counters() const noexcept { return gate_.counters(); }
   /// Returns the counters of the workspace walls. Real-time: safe.
   const WallCounters& wall_counters() const noexcept { return wall_counters_; }
+  /// Returns the force that the arm could not give. Real-time: safe.
+  const MissingForce& missing_force() const noexcept { return missing_force_; }
   const SafetyGate& gate() const noexcept { return gate_; }  ///< Returns the gate. Real-time: safe.
   /// Returns the settings of the device. Real-time: safe.
   const DeviceSettings& settings() const noexcept { return settings_; }
@@ -284,6 +294,8 @@ class THIMBLE_EXPORT Device {
   void watch() noexcept;
   bool wait_for_hold() noexcept;
   void stop_at_walls(const ForceCommand& command) noexcept;
+  void write_along_axes(const ForceCommand& command) noexcept;
+  Eigen::Vector3d along_axes(const Eigen::Vector3d& f_W) noexcept;
   void pass_on(const ForceCommand& command, double held) noexcept;
   void forget_velocity() noexcept;
   /// Returns the velocity used by the gate, m/s. It does not depend on a slow filter that a law
@@ -332,6 +344,7 @@ class THIMBLE_EXPORT Device {
   std::int64_t quiet_since_ns_ = 0;  // Last report, or the start of listening.
   std::int64_t listened_ns_ = 0;     // Last call of `read` or `idle`.
   bool guarded_;                     // True with an energy stage or a heat guard.
+  bool partial_;                     // True if the arm has fewer than three motors.
   // True if the samples have other members than joints and counts.
   bool extras_;
   bool active_ = false;
@@ -350,6 +363,8 @@ class THIMBLE_EXPORT Device {
   int refused_in_a_row_ = 0;
   int missed_in_a_row_ = 0;  // Number of reads without a report while listening.
   std::int64_t refused_since_ns_ = 0;
+  MissingForce missing_force_;
+  Eigen::Matrix3d along_axes_W_;  // Projects a force to the axes of the tip (ArmTraits::axes).
   std::atomic<ArmLink*> offered_{nullptr}, retired_{nullptr};
   std::atomic<Asked> activation_asked_{Asked::kNo};
 };

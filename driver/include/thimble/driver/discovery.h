@@ -25,6 +25,19 @@ enum class Certainty : std::uint8_t {
   kUnsupported,  ///< Known device that Thimble cannot drive.
 };
 
+/// USB properties by which an installed arm file describes the board of its arm.
+struct DescribedBoard {
+  std::string arm;                              ///< Name of the arm.
+  std::string arm_file;                         ///< Name of the installed arm file.
+  std::uint16_t vendor_id = 0, product_id = 0;  ///< USB ids.
+  std::string product;                          ///< Whole product string; empty: not compared.
+  std::uint16_t usage_page = 0, usage = 0;      ///< HID usage; 0: not compared.
+  bool serial = false;                          ///< The board is on a serial port, not on HID.
+  bool bulk = false;                            ///< The board is on USB bulk transfers.
+  /// The board sends unasked, and its reports have a check value or a number.
+  bool proves_itself = false;
+};
+
 /// A connected board that may belong to an arm.
 struct THIMBLE_EXPORT FoundArm {
   ArmKind kind = ArmKind::kUnsupported;  ///< Protocol of the board (arm_table.h).
@@ -50,6 +63,8 @@ struct THIMBLE_EXPORT FoundArm {
   std::string software;
   /// Reason why a service cannot use the arm now, in one sentence; empty if it can.
   std::string trouble;
+  /// Name of the installed arm file that describes this board, if its kind is kDescribed.
+  std::string arm_file;
 
   /// Returns the name shown to users, which is also the name of the arm's calibration. It is the
   /// serial number if that is unique. Otherwise it is the kernel's name of the USB socket
@@ -65,8 +80,11 @@ THIMBLE_EXPORT bool is_placeholder(std::string_view serial) noexcept;
 /// ids, strings and report descriptors that the kernel provides below `root`/sys. Opens no device
 /// and needs no permission. If `root` is "/", it also lists the arms of vendor services on this
 /// computer. It listens to these services for at most half a second and sends nothing. Fails if USB
-/// devices cannot be listed and no service has an arm. Real-time: never from the servo thread.
-THIMBLE_EXPORT Result<std::vector<FoundArm>> find_arms(const std::filesystem::path& root = "/");
+/// devices cannot be listed and no service has an arm. `described` are boards that arm files
+/// describe. Each is recognised only by its whole product string or by a usage of its vendor; its
+/// ids alone prove nothing. Real-time: never from the servo thread.
+THIMBLE_EXPORT Result<std::vector<FoundArm>> find_arms(
+    const std::filesystem::path& root = "/", const std::vector<DescribedBoard>& described = {});
 
 /// Returns the contents of a small kernel text file without its newline; empty if it cannot be
 /// read. Real-time: never from the servo thread.

@@ -14,7 +14,7 @@ namespace thimble::driver {
 
 /// Encoder of one joint and its zero.
 struct JointEncoder {
-  double sign = 1;                   ///< +1 if counts grow with the joint angle, else -1.
+  double sign = 1;  ///< +1 if counts grow with the joint angle, -1 if they fall, 0: no encoder.
   double counts_per_motor_turn = 0;  ///< Quadrature counts per turn of the motor.
   /// Counts at the home pose, where the counter is zero; added to the counter.
   std::int64_t home_counts = 0;

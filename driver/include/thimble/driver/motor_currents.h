@@ -11,8 +11,10 @@ namespace thimble::driver {
 
 /// One motor and the cable that connects it to its joint.
 struct MotorDrive {
-  double sign = 1;   ///< +1 if a positive current turns the joint to positive angles, else -1.
-  double ratio = 1;  ///< Motor turns per joint turn.
+  /// +1 if a positive current turns the joint to positive angles, -1 if to negative ones, 0: the
+  /// arm has no such motor.
+  double sign = 1;
+  double ratio = 1;            ///< Motor turns per joint turn.
   double torque_constant = 0;  ///< Torque per current at the motor, N m/A.
   double current_max = 0;      ///< Largest current that the host may request, A.
 

@@ -27,12 +27,17 @@ struct TransportRead {
   std::uint32_t skipped = 0;
 };
 
-/// Framing of messages in a byte stream by their first and last byte.
+class WireLayout;
+
+/// Framing of messages in a byte stream, by their first and last byte or by a description.
 struct Framing {
   std::byte begin{};  ///< First byte of a message.
   std::byte end{};    ///< Last byte of a message.
   /// Longest message including both bytes, at most kReportCapacity (arm.h).
   std::size_t size_max = 0;
+  /// Messages of a described wire (internal); if not null, it replaces the other members. It must
+  /// outlive the transport.
+  const WireLayout* described = nullptr;
 };
 
 /// Carries reports between the host and one arm as bytes, independent of their meaning.

@@ -34,10 +34,12 @@ THIMBLE_EXPORT Result<std::unique_ptr<Transport>> open_hid_transport(const std::
 
 /// Opens an arm on a serial port by its node (/dev/serial/by-id/...), for exclusive use by this
 /// program (NodeLock). Opening sends nothing. The transport neither allocates nor locks. A message
-/// for which the port has no room is refused; the write does not wait.
+/// for which the port has no room is refused; the write does not wait. `baud`: bit rate, which USB
+/// serial boards ignore.
 THIMBLE_EXPORT Result<std::unique_ptr<Transport>> open_serial_transport(const std::string& node,
                                                                         const Framing& framing,
-                                                                        const Clock& clock);
+                                                                        const Clock& clock,
+                                                                        int baud = 115200);
 
 /// Address of a USB device in the kernel.
 struct UsbAddress {

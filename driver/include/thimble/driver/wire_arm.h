@@ -31,42 +31,24 @@ inline std::int32_t round_half_away(double x) noexcept {
   return {whole(amperes.x()), whole(amperes.y()), whole(amperes.z())};
 }
 
-/// An arm composed of a wire format and a geometry.
-///
-/// A Wire has two static functions, both noexcept. `bool decode(bytes, ArmReading&)` accepts any
-/// bytes and leaves the reading unchanged if it returns false. `std::size_t encode(mA, bytes)`
-/// writes a report with three motor values and returns its length. A wire whose board finds its own
-/// zero, and reports a loss of it, has a constant `kFindsZero = true`. Real-time: safe.
-template <class Wire, class Geometry>
-class WireArm final : public Arm {
+/// The part of an arm that does not depend on its wire: geometry, motors and encoders. Real-time:
+/// safe.
+template <class Geometry>
+class JointArm : public Arm {
  public:
-  explicit WireArm(const JointModel<Geometry>& model) : model_(model) {}
+  explicit JointArm(const JointModel<Geometry>& model) : model_(model) {}
 
-  bool decode(std::span<const std::byte> report, ArmReading& reading) const noexcept override {
-    return Wire::decode(report, reading);
-  }
-
-  std::size_t encode(const MotorCurrents& currents,
-                     std::span<std::byte, kReportCapacity> report) const noexcept override {
-    return Wire::encode(whole_mA(currents), report);
-  }
-
-  void find_pose(const ArmReading& reading, ArmPose& pose) const noexcept override {
+  void find_pose(const ArmReading& reading, ArmPose& pose) const noexcept final {
     pose.q = model_.joint_angles(reading);
     model_.geometry.forward(pose.q, pose.p_BT, pose.J_BT);
   }
 
-  const std::array<MotorDrive, 3>& drives() const noexcept override { return model_.drives; }
+  const std::array<MotorDrive, 3>& drives() const noexcept final { return model_.drives; }
 
-  bool zero_at_power_on() const noexcept override {
-    if constexpr (requires { Wire::kFindsZero; }) return !Wire::kFindsZero;
-    return true;
-  }
-
-  bool has_gimbal() const noexcept override { return kCarries && model_.gimbal.has_value(); }
+  bool has_gimbal() const noexcept final { return kCarries && model_.gimbal.has_value(); }
 
   void orient(const ArmReading& reading, const ArmPose& pose, Eigen::Vector3d& gimbal,
-              Eigen::Matrix3d& R_BT) const noexcept override {
+              Eigen::Matrix3d& R_BT) const noexcept final {
     if constexpr (kCarries) {
       if (!model_.gimbal) return;
       gimbal = model_.gimbal->angles(reading.auxiliary);
@@ -83,6 +65,32 @@ class WireArm final : public Arm {
   };
 
   JointModel<Geometry> model_;
+};
+
+/// An arm composed of a wire format and a geometry.
+///
+/// A Wire has two static functions, both noexcept. `bool decode(bytes, ArmReading&)` accepts any
+/// bytes and leaves the reading unchanged if it returns false. `std::size_t encode(mA, bytes)`
+/// writes a report with three motor values and returns its length. A wire whose board finds its own
+/// zero, and reports a loss of it, has a constant `kFindsZero = true`. Real-time: safe.
+template <class Wire, class Geometry>
+class WireArm final : public JointArm<Geometry> {
+ public:
+  using JointArm<Geometry>::JointArm;
+
+  bool decode(std::span<const std::byte> report, ArmReading& reading) const noexcept override {
+    return Wire::decode(report, reading);
+  }
+
+  std::size_t encode(const MotorCurrents& currents,
+                     std::span<std::byte, kReportCapacity> report) const noexcept override {
+    return Wire::encode(whole_mA(currents), report);
+  }
+
+  bool zero_at_power_on() const noexcept override {
+    if constexpr (requires { Wire::kFindsZero; }) return !Wire::kFindsZero;
+    return true;
+  }
 };
 
 }  // namespace thimble::driver

@@ -1,5 +1,7 @@
 #include "arms/falcon/falcon_arm.h"
 
+#include "math/elementary.h"
+
 namespace thimble::driver::falcon {
 
 bool PacketWire::decode(std::span<const std::byte> bytes, ArmReading& reading) noexcept {
@@ -23,7 +25,10 @@ std::size_t PacketWire::encode(const std::array<std::int16_t, 3>& motors,
 }
 
 DeltaArm falcon_geometry() noexcept {
-  constexpr double kDegree = std::numbers::pi / 180;
+  const auto direction = [](double degrees) {
+    const auto [sine, cosine] = math::sin_cos(degrees * std::numbers::pi / 180);
+    return Eigen::Vector2d(cosine, sine);
+  };
   return {.a = 0.060,
           .b = 0.1025,
           .c = 0.01443,
@@ -33,7 +38,7 @@ DeltaArm falcon_geometry() noexcept {
           .r = 0.0400,
           .s = -0.02309,
           // Each leg is turned by 15 degrees from the plane of the desk [S].
-          .azimuth = {(90 + 15) * kDegree, (-30 + 15) * kDegree, (-150 + 15) * kDegree},
+          .outwards = {direction(90 + 15), direction(-30 + 15), direction(-150 + 15)},
           .p_BM = {0, 0, 0.120}};
 }
 

@@ -8,7 +8,7 @@
 #include "body/motion/body_frame.h"
 #include "body/motion/rigid_body.h"
 #include "body/motion/translating_body.h"
-#include "math/elementary.h"
+#include "body/motion/turn.h"
 
 namespace thimble::render {
 
@@ -75,14 +75,8 @@ class RigidMotion {
   BodyFrame frame_after(double time) const noexcept {
     const MassProperties& first = body_.settings().mass;
     const Eigen::Vector3d turn_W = time * body_.settings().time_scale * body_.omega_W();
-    const double half = turn_W.norm() / 2;
     BodyFrame frame{.R_WB = R_WB_};
-    if (half > 0) {
-      const auto [sine, cosine] = math::sin_cos(half);
-      const Eigen::Vector3d axis = sine / (2 * half) * turn_W;
-      frame.R_WB =
-          Eigen::Quaterniond(cosine, axis.x(), axis.y(), axis.z()).toRotationMatrix() * R_WB_;
-    }
+    if (turn_W.squaredNorm() > 0) frame.R_WB = turn_by(turn_W).toRotationMatrix() * R_WB_;
     frame.p_WB =
         body_.p_WC() + time * body_.settings().time_scale * body_.v_WC() - frame.R_WB * first.p_WC;
     return frame;

@@ -1,5 +1,7 @@
 #include "body/motion/move_object.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -17,6 +19,8 @@ using Moved = driver::Result<std::unique_ptr<ObjectTouch>>;
 // Bounds of a scene's numbers catch misplaced decimal points and values in g or mm.
 constexpr double kMassMin = 1e-4;         // kg
 constexpr double kMassMax = 1e3;          // kg
+constexpr double kDensityMin = 0.1;       // kg/m^3, a tenth of air's
+constexpr double kDensityMax = 3e4;       // kg/m^3, above osmium's 2.26e4
 constexpr double kAccelerationMax = 100;  // m/s^2
 constexpr double kDampingMax = 1e3;       // N s/m, N m s
 constexpr double kTimeScaleMin = 1e-3;
@@ -49,14 +53,12 @@ driver::Result<void> check_grip(const MotionChoice& choice) {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
-TranslatingMotion three_ways(const TriangleMesh& mesh_W, const MotionChoice& choice,
+TranslatingMotion three_ways(const TriangleMesh& mesh_W, const MotionChoice& choice, double mass,
                              const BodyCoupling& coupling) {
-  TranslatingBody body(choice.mass, choice.damping, choice.time_scale, coupling.step);
+  TranslatingBody body(mass, choice.damping, choice.time_scale, coupling.step);
   body.set_velocity(choice.v_W / choice.time_scale);
-  TranslatingMotion::Settings settings{.mass = choice.mass,
-                                       .gravity_W = choice.gravity_W,
-                                       .floor = choice.floor,
-                                       .reach = choice.reach};
+  TranslatingMotion::Settings settings{
+      .mass = mass, .gravity_W = choice.gravity_W, .floor = choice.floor, .reach = choice.reach};
   if (choice.floor) {
     settings.lowest = std::numeric_limits<double>::infinity();
     for (const Eigen::Vector3d& p : mesh_W.vertices) {
@@ -77,11 +79,28 @@ driver::Result<AnyMotion> motion_of(const TriangleMesh& mesh_W, const MotionChoi
   // The numbers are checked for both kinds.
   auto rigid = rigid_motion_of(mesh_W, choice);
   if (!rigid) return rigid.error();
-  if (choice.kind == MotionKind::kTranslate) return AnyMotion(three_ways(mesh_W, choice, coupling));
+  if (choice.kind == MotionKind::kTranslate) {
+    return AnyMotion(three_ways(mesh_W, choice, rigid->body().settings().mass.mass, coupling));
+  }
   return AnyMotion(std::move(rigid).value());
 }
 
 }  // namespace
+
+driver::Result<double> mass_of(const TriangleMesh& mesh_W, const MotionChoice& choice) {
+  if (!choice.density) return choice.mass;
+  const auto unit = mass_properties(mesh_W, 1);
+  if (!unit) return unit.error();
+  const double mass = *choice.density * unit->volume;
+  // Written so that NaN is refused.
+  if (!(mass >= kMassMin && mass <= kMassMax)) {
+    return driver::Error{fmt::format(
+        "A density of {:g} kg/m^3 gives a mass of {:.3g} kg; expected {:g} to {:g} kg. Check the "
+        "size of the mesh ({:.3g} cm^3), or set mass.",
+        *choice.density, mass, kMassMin, kMassMax, 1e6 * unit->volume)};
+  }
+  return mass;
+}
 
 driver::Result<RigidMotion> rigid_motion_of(const TriangleMesh& mesh_W, const MotionChoice& choice,
                                             const Eigen::Matrix3d* axes_W) {
@@ -89,7 +108,9 @@ driver::Result<RigidMotion> rigid_motion_of(const TriangleMesh& mesh_W, const Mo
   if (!choice.v_W.allFinite() || !choice.omega_W.allFinite()) {
     return driver::Error{"The initial velocities of a body must be finite."};
   }
-  auto mass = mass_properties(mesh_W, choice.mass);
+  const auto kg = mass_of(mesh_W, choice);
+  if (!kg) return kg.error();
+  auto mass = mass_properties(mesh_W, *kg);
   if (!mass) return mass.error();
   if (axes_W != nullptr) prefer_axes(*axes_W, *mass);
   RigidBodySettings settings{.mass = *mass,
@@ -108,7 +129,7 @@ driver::Result<RigidMotion> rigid_motion_of(const TriangleMesh& mesh_W, const Mo
   if (!body) return body.error();
   if (auto held = check_grip(choice); !held) return held.error();
   const Eigen::Vector3d omega_B = mass->q_WB.conjugate() * choice.omega_W;
-  body->set_momentum(choice.mass * choice.v_W / choice.time_scale,
+  body->set_momentum(*kg * choice.v_W / choice.time_scale,
                      mass->q_WB * mass->inertia.cwiseProduct(omega_B) / choice.time_scale);
   return RigidMotion(*body, choice.reach);
 }
@@ -117,7 +138,13 @@ void MotionChoice::read(SettingsReader& reader) {
   std::size_t ways = 0;
   reader.choice("kind", ways, {"translate", "rigid"});
   kind = static_cast<MotionKind>(ways);
-  reader.number("mass", mass, {.unit = "kg", .min = kMassMin, .max = kMassMax, .required = true});
+  if (reader.has("density")) {
+    density = 0;
+    reader.number("density", *density, {.unit = "kg/m^3", .min = kDensityMin, .max = kDensityMax});
+    reader.explain_unused("mass", "cannot be combined with density");
+  } else {
+    reader.number("mass", mass, {.unit = "kg", .min = kMassMin, .max = kMassMax, .required = true});
+  }
   reader.vector("gravity", gravity_W,
                 {.unit = "m/s^2", .min = -kAccelerationMax, .max = kAccelerationMax});
   reader.number("damping", damping, {.unit = "N s/m", .min = 0, .max = kDampingMax});

@@ -13,6 +13,12 @@
 
 namespace thimble::render {
 
+/// Returns the mass of a body (kg): as given, or that of the matter inside of its mesh (W, m). The
+/// error states that the mesh encloses no volume, or that the mass is out of range. Real-time:
+/// never from the servo thread.
+THIMBLE_EXPORT driver::Result<double> mass_of(const TriangleMesh& mesh_W,
+                                              const MotionChoice& choice);
+
 /// Makes an object movable: wraps its force law, made for `mesh_W` (W, m; closed). The error names
 /// an invalid number, or states that the mesh encloses no volume. Real-time: never from the servo
 /// thread.

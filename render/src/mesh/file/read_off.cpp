@@ -1,5 +1,6 @@
 #include "mesh/file/read_off.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -82,8 +83,15 @@ std::optional<Error> read_vertices(TextWords& words, const Header& header, Trian
 }
 
 std::optional<Error> read_faces(TextWords& words, const Header& header, TriangleMesh& mesh) {
+  mesh.triangles.reserve(static_cast<std::size_t>(header.faces));
   std::vector<std::int32_t> corners;
   for (std::int64_t face = 0; face < header.faces; ++face) {
+    // Most faces of most files: about a third of the time of the words below.
+    std::array<std::int32_t, 3> plain;
+    if (words.next_plain_line(3, static_cast<std::uint32_t>(header.vertices), plain)) {
+      mesh.triangles.push_back(plain);
+      continue;
+    }
     const std::string name = "face " + std::to_string(face);
     const std::string_view size_word = words.next();
     const auto size = whole_number(size_word);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -65,6 +66,27 @@ class TextWords {
     return text_.substr(begin, at_ - begin);
   }
 
+  /// Reads the next line if it is `count`, then numbers below `limit`, as plain digits with single
+  /// spaces, and nothing else. Returns false and reads nothing if it has any other form.
+  bool next_plain_line(std::uint32_t count, std::uint32_t limit, std::span<std::int32_t> numbers) {
+    std::size_t at = at_;
+    if (at < text_.size() && text_[at] == '\r') ++at;
+    if (at == text_.size() || text_[at] != '\n') return false;
+    ++at;
+    std::uint32_t number = 0;
+    if (!plain_number(at, number) || number != count) return false;
+    for (std::int32_t& one : numbers) {
+      if (at == text_.size() || text_[at] != ' ') return false;
+      ++at;
+      if (!plain_number(at, number) || number >= limit) return false;
+      one = static_cast<std::int32_t>(number);
+    }
+    if (at == text_.size() || !is_line_end(text_[at])) return false;
+    at_ = at;
+    ++line_;
+    return true;
+  }
+
   /// Skips the rest of this line; the next word on it is empty.
   void skip_line() {
     while (at_ < text_.size() && !is_line_end(text_[at_])) ++at_;
@@ -95,6 +117,15 @@ class TextWords {
  private:
   static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
   static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+  bool plain_number(std::size_t& at, std::uint32_t& number) const {
+    constexpr std::size_t kDigitsMax = 9;  // below 2^32
+    const std::size_t begin = at;
+    number = 0;
+    while (at < text_.size() && text_[at] >= '0' && text_[at] <= '9' && at - begin <= kDigitsMax) {
+      number = 10 * number + static_cast<std::uint32_t>(text_[at++] - '0');
+    }
+    return at > begin && at - begin <= kDigitsMax;
+  }
   bool joins_here() const {
     return joins_lines_ && (at_ + 1 == text_.size() || is_line_end(text_[at_ + 1]));
   }

@@ -114,4 +114,9 @@ bool certainly_valid(const TriangleMesh& mesh, const Adjacency& neighbours) {
          holds_matter(mesh, box);
 }
 
+bool certainly_valid(const TriangleMesh& mesh) {
+  const auto neighbours = adjacency_if_closed(mesh);
+  return neighbours && certainly_valid(mesh, *neighbours);
+}
+
 }  // namespace thimble::render

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "bringup/feel_check.h"
+#include "support/boards/described_port.h"
 #include "support/random.h"
 #include "support/scratch.h"
 #include "thimble/scene/real_arm.h"
@@ -73,6 +74,61 @@ TEST_F(CalibrationTest, FindsHomeAndSignsOfAnyArmFromThreeMovements) {
       EXPECT_NEAR(found->home_counts[k], truth.home_counts[k], 1);  // one count of rounding
     }
   }
+}
+
+/// Returns the vintage arm with a described wire.
+scene::ArmFile described() {
+  const auto file = support::scratch_folder() / "calibration_described.yaml";
+  const std::string wire = support::text_of_file(std::filesystem::path(THIMBLE_SOURCE_DIR) /
+                                                 "app/arms/wires/hfab_14_byte.yaml");
+  std::ofstream(file) << support::phantom_with_wire("\nprotocol: described\n" + wire);
+  auto arm = scene::load_arm(file);
+  EXPECT_TRUE(arm) << arm.error().message;
+  return arm ? std::move(arm).value() : scene::ArmFile{};
+}
+
+TEST_F(CalibrationTest, FindsTheSignsOfAnArmWithADescribedWire) {
+  const scene::ArmFile file = described();
+  ASSERT_TRUE(file.wire);
+  scene::Calibration truth;
+  for (std::size_t k = 0; k < 3; ++k) {
+    truth.encoder_sign[k] = -static_cast<int>(file.model.encoders[k].sign);
+    truth.motor_sign[k] = -static_cast<int>(file.model.drives[k].sign);
+  }
+  scene::ArmFile true_file = file;
+  scene::apply(truth, true_file);
+  std::array<driver::ArmReading, 3> moved;
+  for (int axis = 0; axis < 3; ++axis) {
+    moved[static_cast<std::size_t>(axis)] =
+        reading_at(true_file, 0.04 * Eigen::Vector3d::Unit(axis));
+  }
+  const auto found = scene::find_calibration(file, driver::ArmKind::kDescribed,
+                                             reading_at(true_file, {0, 0, 0}), moved);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->encoder_sign, truth.encoder_sign);
+}
+
+TEST_F(CalibrationTest, AsksForAtMostFiveCentimetresInTheWorkspace) {
+  scene::ArmFile file = vintage();
+  EXPECT_EQ(scene::calibration_move(file, {0, 0, 0}, 1), 0.05);
+  file.workspace = {.min_W = {-0.02, -0.02, -0.001}, .max_W = {0.02, 0.033, 0.001}};
+  EXPECT_NEAR(scene::calibration_move(file, {0, 0, 0}, 0), 0.015, 1e-12);
+  EXPECT_NEAR(scene::calibration_move(file, {0, 0, 0}, 1), 0.025, 1e-12);
+  EXPECT_NEAR(scene::calibration_move(file, {0, 0, 0}, 2), 0.005, 1e-12);
+  // At the edge of the box: nearly half of its width.
+  EXPECT_NEAR(scene::calibration_move(file, {0.02, 0, 0}, 0), 0.015, 1e-12);
+}
+
+TEST_F(CalibrationTest, AcceptsTheSmallMovementsOfASmallArm) {
+  scene::ArmFile file = vintage();
+  std::array<driver::ArmReading, 3> moved;
+  for (int axis = 0; axis < 3; ++axis) {
+    moved[static_cast<std::size_t>(axis)] = reading_at(file, 0.013 * Eigen::Vector3d::Unit(axis));
+  }
+  const auto home = reading_at(file, {0, 0, 0});
+  EXPECT_FALSE(scene::find_calibration(file, driver::ArmKind::kPolhem, home, moved));
+  file.workspace = {.min_W = {-0.02, -0.02, -0.02}, .max_W = {0.02, 0.02, 0.02}};
+  EXPECT_TRUE(scene::find_calibration(file, driver::ArmKind::kPolhem, home, moved));
 }
 
 TEST_F(CalibrationTest, RefusesAmbiguousMovements) {

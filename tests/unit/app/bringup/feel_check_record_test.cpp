@@ -10,6 +10,7 @@
 #include "arm/calibration.h"
 #include "arm_policy/limits_policy.h"
 #include "arm_policy_home.h"
+#include "support/boards/described_port.h"
 #include "thimble/scene/scene_file.h"
 #include "user_folders.h"
 
@@ -55,6 +56,16 @@ TEST_F(ArmPolicyTest, UncheckedArmStaysBelowHalfANewton) {
   EXPECT_EQ(scene::find_arm_policy(arm, {})->feel_check, scene::FeelCheckState::kNone);
 }
 
+TEST_F(ArmPolicyTest, CalibrationOfADescribedBoardIsPartOfTheRecord) {
+  const FoundArm arm = plug(ArmKind::kDescribed, "D1");
+  scene::RealArmFile file;
+  file.path = kArms / "reference_five_bar.yaml";
+  file.file = scene::load_arm(file.path).value();
+  const std::string before = scene::describe_checked(arm, file, {}).data;
+  file.file.model.encoders[0].home_counts += 100;
+  EXPECT_NE(scene::describe_checked(arm, file, {}).data, before);
+}
+
 /// Checks whether a passed feel check is still valid after a change.
 class FeelCheckRecordTest : public ArmPolicyTest {
  protected:
@@ -79,6 +90,21 @@ class FeelCheckRecordTest : public ArmPolicyTest {
 TEST_F(FeelCheckRecordTest, IsValidUntilSomethingChanges) {
   EXPECT_TRUE(passed(arm_));
   EXPECT_TRUE(passed(plug(ArmKind::kWoody, "W1")));
+}
+
+TEST_F(FeelCheckRecordTest, OfADescribedArmDependsOnItsCalibration) {
+  const fs::path path = home_ / "described.yaml";
+  write(path, support::phantom_with_wire("\nprotocol: described\n" +
+                                         text_of(kArms / "wires/hfab_14_byte.yaml")));
+  const auto file = scene::load_arm(path);
+  ASSERT_TRUE(file) << file.error().message;
+  const FoundArm arm = plug(ArmKind::kDescribed, "D1");
+  scene::RealArmFile real;
+  real.file = *file;
+  real.path = path;
+  const std::string before = scene::describe_checked(arm, real, {}).data;
+  real.file.model.drives[0].sign *= -1;
+  EXPECT_NE(scene::describe_checked(arm, real, {}).data, before);
 }
 
 TEST_F(FeelCheckRecordTest, IsInvalidAfterAnyChange) {

@@ -8,9 +8,9 @@
 #include "bringup/doctor.h"
 #include "support/mock/mock_haply_service.h"
 #include "thimble/driver/device.h"
+#include "thimble/scene/arm_file.h"
 #include "thimble/scene/arm_policy.h"
 #include "thimble/scene/arm_simulation.h"
-#include "thimble/scene/device_settings.h"
 #include "thimble/scene/real_arm.h"
 
 namespace thimble::bringup {

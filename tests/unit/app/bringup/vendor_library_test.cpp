@@ -9,7 +9,7 @@
 #include "support/mock/mock_dhd.h"
 #include "support/mock/mock_hd.h"
 #include "thimble/driver/device.h"
-#include "thimble/scene/device_settings.h"
+#include "thimble/scene/arm_file.h"
 #include "thimble/scene/real_arm.h"
 #include "thimble/scene/real_arm_file.h"
 

@@ -321,7 +321,7 @@ TEST_F(OutputPlanTest, TwoOutputsOfOneNameAreRefused) {
 TEST_F(OutputPlanTest, FileInAnOutputFolderIsNoOtherOutput) {
   OutputPlan plan;
   plan.write("--json", folder_ / "figures.json", kJson);
-  plan.write_folder("--out", folder_, {"figures.json"});
+  plan.write_folder("--output", folder_, {"figures.json"});
   EXPECT_FALSE(plan.begin());
 }
 
@@ -337,7 +337,7 @@ TEST_F(OutputPlanTest, UnwrittenOutputsAndNewFoldersAreRemoved) {
   {
     OutputPlan plan;
     plan.write("--csv", folder_ / "a.csv", kTable);
-    plan.write_folder("--out", folder_ / "new" / "deep", {"figures.json"});
+    plan.write_folder("--output", folder_ / "new" / "deep", {"figures.json"});
     ASSERT_TRUE(plan.begin());
     EXPECT_EQ(files(), 2);
   }

@@ -1,5 +1,6 @@
 // The page that plays a touch: it contains the required data of a run, as recorded.
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -83,6 +84,24 @@ TEST(PageBlock, WritesBase64AsTheStandardDoes) {
   EXPECT_EQ(of("foob"), "Zm9vYg==");
   EXPECT_EQ(of("fooba"), "Zm9vYmE=");
   EXPECT_EQ(of("foobar"), "Zm9vYmFy");
+}
+
+TEST(PageBlock, DeflatedBytesInflateToTheSame) {
+  support::Random random(1);
+  for (const std::size_t size : {0, 1, 1000, 300'000}) {
+    std::vector<std::uint8_t> bytes(size);
+    for (std::size_t i = 0; i < size; ++i) {
+      bytes[i] = static_cast<std::uint8_t>(i % 3 == 0 ? random.uniform(0, 255)
+                                                      : static_cast<double>(i / 100));
+    }
+    const auto packed = deflated(bytes);
+    std::vector<std::uint8_t> again(size + 1);
+    uLongf count = again.size();
+    ASSERT_EQ(uncompress(again.data(), &count, packed.data(), packed.size()), Z_OK) << size;
+    again.resize(count);
+    EXPECT_EQ(again, bytes) << size;
+    EXPECT_LT(packed.size(), bytes.size() * 9 / 10 + 20) << size;
+  }
 }
 
 TEST(PageBlock, AlignsEveryArrayForABrowser) {
@@ -403,6 +422,44 @@ TEST(BodyTrace, LongRunFitsWithoutAllocation) {
   EXPECT_GT(trace.times_ns().back(), 57'000 * kMillisecond);
   for (std::size_t i = 0; i < trace.times_ns().size(); ++i) {
     ASSERT_NEAR(trace.poses()[i].p_WB[0], 1e-9 * static_cast<double>(trace.times_ns()[i]), 1e-9);
+  }
+}
+
+TEST(PageBodies, HaveThePoseOfEachBodyInEachPicture) {
+  constexpr std::size_t kBodies = 3;
+  std::vector<std::unique_ptr<render::ObjectTouch>> objects;
+  std::vector<Wanderer*> wanderers;
+  for (std::size_t i = 0; i <= kBodies; ++i) {  // the second one stays
+    auto one = std::make_unique<Wanderer>();
+    wanderers.push_back(one.get());
+    objects.push_back(std::move(one));
+  }
+  const render::SceneTouch touch(std::move(objects));
+  const std::vector<std::size_t> moving = {0, 2, 3};
+  session::BodyTrace trace(touch, moving, 1000 * kMillisecond);
+  auto ticks = lively_run(100);
+  for (TickRecord& tick : ticks) {
+    for (std::size_t i = 0; i < wanderers.size(); ++i) {
+      wanderers[i]->at = static_cast<double>(i + 1) * (1 + 1e-3 * static_cast<double>(tick.tick));
+    }
+    trace.take(tick);
+  }
+  PageTouch page{};
+  page.bodies = &trace;
+  page.arms.emplace_back();
+  page.arms.back().ticks = ticks;
+  PageBlock block;
+  const auto json = page_bodies(page, block);
+  EXPECT_EQ(json["objects"], nlohmann::ordered_json(moving));
+  const auto times = numbers_of<double>(block, "bodies.t");
+  const auto poses = numbers_of<float>(block, "bodies.poses");
+  ASSERT_GT(times.size(), 4U);
+  ASSERT_EQ(poses.size(), 7 * kBodies * times.size());
+  for (std::size_t picture = 0; picture < times.size(); ++picture) {
+    for (std::size_t k = 0; k < kBodies; ++k) {
+      const double expected = static_cast<double>(moving[k] + 1) * (1 + times[picture]);
+      ASSERT_NEAR(poses[7 * (picture * kBodies + k)], expected, 1e-5) << picture << ", body " << k;
+    }
   }
 }
 

@@ -145,7 +145,7 @@ void collect_keys(const YAML::Node& schema, const std::string& place, std::set<s
     std::string of = place;
     for (const auto& pair : part["if"]["properties"]) {
       of = place.substr(place.rfind('.') + 1) + ' ' + pair.first.Scalar() + ": " +
-           pair.second["const"].Scalar();
+           pair.second[pair.second["const"] ? "const" : "title"].Scalar();
     }
     collect_keys(part["then"], of, keys);
   }

@@ -33,6 +33,11 @@ TEST(NearestWord, IgnoresDissimilarWords) {
   EXPECT_EQ(nearest_word("o", {"at", "out"}), "out");
 }
 
+TEST(NearestWord, FindsTheOnlyWordThatBeginsSo) {
+  EXPECT_EQ(nearest_word("fr", kKnown), "friction");
+  EXPECT_FALSE(nearest_word("r", {"replaying", "recording"}));
+}
+
 TEST(NearestWord, PrefersTheFirstOfEquallyNear) {
   EXPECT_EQ(nearest_word("bat", {"cat", "hat"}), "cat");
 }

@@ -52,6 +52,9 @@ driver::FoundArm found(ArmKind kind, const std::string& serial) {
     case ArmKind::kHd:
       arm.board = BoardKind::kHdLibrary;
       break;
+    case ArmKind::kDescribed:
+      arm.board = BoardKind::kDescribed;
+      break;
     case ArmKind::kUnsupported:
       arm.certainty = Certainty::kUnsupported;
       break;

@@ -7,7 +7,8 @@
 #include <memory>
 #include <utility>
 
-#include "thimble/scene/device_settings.h"
+#include "thimble/driver/device.h"
+#include "thimble/scene/arm_file.h"
 #include "thimble/scene/scene_file.h"
 #include "thimble/scene/shipped_files.h"
 

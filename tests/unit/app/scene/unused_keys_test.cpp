@@ -146,6 +146,8 @@ TEST(UnusedKeys, SayWhatTheyRequire) {
             "scene.yaml:5: stiffness: needs a surface: a mesh or a shape.");
   EXPECT_EQ(of_object("plane: {}, stiffness: 1, body: {motion: {mass: 1, hold_damping: 1}}"),
             "scene.yaml:5: hold_damping: needs hold, the stiffness of the grip in N/m.");
+  EXPECT_EQ(of_object("plane: {}, stiffness: 1, body: {motion: {mass: 1, density: 900}}"),
+            "scene.yaml:5: mass: cannot be combined with density.");
   EXPECT_EQ(mistakes_of_scene(scene_text(kPlane, kPath) + "faults: apart\n"),
             "scene.yaml:7: faults: needs arms, a list of two arms or more.");
   EXPECT_EQ(mistakes_of_scene(

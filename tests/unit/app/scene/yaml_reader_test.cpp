@@ -116,7 +116,8 @@ TEST(YamlReader, RejectsADuplicateKey) {
 
 TEST(YamlReader, RefusesEmptyFilesInOneSentence) {
   for (const std::string text : {"", "\n\n", "# nothing\n", "---\n", "~\n"}) {
-    EXPECT_EQ(mistakes_in(text), "arm.yaml: is empty; expected a map of keys and values.") << text;
+    EXPECT_EQ(mistakes_in(text), "arm.yaml:1: is empty; expected a map of keys and values.")
+        << text;
   }
 }
 

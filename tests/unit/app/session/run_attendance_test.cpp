@@ -86,17 +86,19 @@ TEST_F(BlackBoxesTest, AllAreSavedAfterRun) {
   EXPECT_EQ(files().size(), 2U);
 }
 
-TEST_F(BlackBoxesTest, TerminalShowsTheProgressOfTheRun) {
+TEST_F(BlackBoxesTest, ProgressOfAWholeRunIsShownIfAsked) {
   const std::atomic<bool> stop{false};
-  session_->step(stop);
-  for (const bool on_terminal : {true, false}) {
-    session::RunAttendance attendance(*session_, nullptr, nullptr, on_terminal);
+  session_->run(stop);
+  scene::choose_progress(scene::ProgressChoice::kAlways);
+  for (const bool shows : {true, false}) {
     testing::internal::CaptureStderr();
+    session::RunAttendance attendance(*session_, nullptr, nullptr, shows);
     attendance.step();
-    const std::string shown = testing::internal::GetCapturedStderr();
-    EXPECT_EQ(shown.find("depth") != std::string::npos, on_terminal) << shown;
     attendance.clear();
+    const std::string shown = testing::internal::GetCapturedStderr();
+    EXPECT_EQ(shown.find("run: 100 %") != std::string::npos, shows) << shown;
   }
+  scene::choose_progress(scene::ProgressChoice::kNever);
 }
 
 TEST_F(BlackBoxesTest, LinesOfEachArmBeginWithItsName) {

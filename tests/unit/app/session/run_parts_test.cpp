@@ -95,12 +95,11 @@ TEST(OpensViewer, OnRequestOrForARealTimeRunAtATerminal) {
   EXPECT_FALSE(session::opens_viewer(ViewerChoice::kNever, true, true, true));
 }
 
-TEST(ProgressLine, ShowsTimeContactForceAndDepth) {
+TEST(RunState, HasTimeContactForceAndDepth) {
   const auto run = support::scripted_run(1000, 100, 300);
-  EXPECT_EQ(session::progress_line(run[200], 20),
-            "   0.2 of 20.0 s   touching  force  0.80 N   depth  1.00 mm ");
-  EXPECT_EQ(session::progress_line(run[50], 0),
-            "   0.1 s   free      force  0.00 N   depth  0.00 mm ");
+  EXPECT_EQ(session::run_state(run[200], 20),
+            "0.2 of 20.0 s   touching  force  0.80 N   depth  1.00 mm");
+  EXPECT_EQ(session::run_state(run[50], 0), "0.1 s   free      force  0.00 N   depth  0.00 mm");
 }
 
 TEST(HeatWarning, IsGivenOnceAtTheFirstTickAboveTheLimit) {

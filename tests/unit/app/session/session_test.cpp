@@ -173,6 +173,37 @@ TEST_F(SessionTest, MovesTheHandFromTickToTick) {
   EXPECT_LT((Eigen::Map<const Eigen::Vector3d>(end.p_WT.data()) - aside).norm(), 2e-3);
 }
 
+TEST_F(SessionTest, PlannedButtonsAreInTheTicks) {
+  session::SessionOptions options;
+  options.duration = 0.2;
+  options.buttons = {{0.05, 1}, {0.1, 0}};
+  const auto run = open("app/scenes/rubber.yaml", options);
+  run->run();
+  const auto& ticks = run->ticks();
+  EXPECT_EQ(ticks[40].buttons, 0);
+  EXPECT_EQ(ticks[60].buttons, 1);
+  EXPECT_EQ(ticks[110].buttons, 0);
+}
+
+TEST_F(SessionTest, AButtonThatAProgramHoldsEnablesForces) {
+  session::SessionOptions options;
+  options.hold.buttons = 1;
+  options.buttons_by_program = true;
+  const auto run = open("app/scenes/rubber.yaml", options);
+  const auto largest = [&] {
+    double force = 0;
+    for (const TickRecord& tick : run->ticks()) {
+      force = std::max(force, Eigen::Map<const Eigen::Vector3d>(tick.f_sent_W.data()).norm());
+    }
+    return force;
+  };
+  while (run->ticks().size() < 1500 && !run->step()) continue;
+  EXPECT_EQ(largest(), 0);
+  EXPECT_TRUE(run->hold_buttons(1));
+  run->run();
+  EXPECT_GT(largest(), 0.3);
+}
+
 TEST_F(SessionTest, SummarisesItsFigures) {
   const auto session = open("box");
   session->run();

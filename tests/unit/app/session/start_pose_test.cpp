@@ -9,7 +9,9 @@
 #include "arm/calibration.h"
 #include "arm_table.h"
 #include "arms/hfab/hfab_report.h"
+#include "support/boards/described_port.h"
 #include "support/boards/scripted_transport.h"
+#include "support/scratch.h"
 #include "support/vintage_arm.h"
 #include "thimble/driver/wire_link.h"
 #include "thimble/scene/real_arm.h"
@@ -51,6 +53,29 @@ TEST(StartPose, OfEveryShippedArmIsAtItsHomePose) {
     EXPECT_EQ(place.problem(p_WMiddle, false), "") << arm.name;
   }
   EXPECT_FALSE(session::StartPose::of(file_of("falcon"), ArmKind::kFalcon).has_home());
+}
+
+TEST(StartPose, DescribedArmHasAHomeUnlessItIsAbsolute) {
+  const auto path = support::scratch_folder() / "start_pose_described.yaml";
+  const std::string wire = support::text_of_file(std::filesystem::path(THIMBLE_SOURCE_DIR) /
+                                                 "app/arms/wires/hfab_14_byte.yaml");
+  std::ofstream(path) << support::phantom_with_wire("\nprotocol: described\n" + wire);
+  auto file = scene::load_arm(path);
+  ASSERT_TRUE(file) << file.error().message;
+  EXPECT_TRUE(session::StartPose::of(*file, ArmKind::kDescribed).has_home());
+  file->home.how = scene::HomeMethod::kAbsolute;
+  EXPECT_FALSE(session::StartPose::of(*file, ArmKind::kDescribed).has_home());
+}
+
+TEST(StartPose, OfADescribedBoardIsAtItsHomePose) {
+  const scene::ArmFile file = file_of("reference_five_bar");
+  const session::StartPose place = session::StartPose::of(file, ArmKind::kDescribed);
+  ASSERT_TRUE(place.has_home());
+  const Eigen::Vector3d p_WHome =
+      file.p_WB +
+      file.R_WB * driver::make_arm(ArmKind::kDescribed, file.model, file.wire.get())->pose({}).p_BT;
+  EXPECT_EQ(place.problem(p_WHome, true), "");
+  EXPECT_NE(place.problem(p_WHome + Eigen::Vector3d(0, 0.021, 0), true), "");
 }
 
 TEST(StartPose, ReportsDistancesFromHomeAndWorkspace) {

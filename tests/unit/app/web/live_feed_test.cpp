@@ -75,6 +75,34 @@ TEST_F(LiveFeedTest, EveryTickReachesAPageOnceUnchanged) {
   }
 }
 
+TEST_F(LiveFeedTest, EveryBodyReachesAPage) {
+  LiveFeed::Place place;
+  run_ticks(5);
+  session::ScenePoses poses;
+  poses.count = 2;  // all objects of the scene
+  for (std::size_t i = 0; i < poses.count; ++i) {
+    poses.object[i] = static_cast<std::int32_t>(i);
+    poses.pose[i].p_WB = {static_cast<double>(i), 0.5, 0};
+    poses.pose[i].q_WB = {0, 0, 0, 1};
+  }
+  run_->store_poses(poses);
+  feed_->step();
+  bool found = false;
+  for (const LiveUpdate& update : updates_of(all(place))) {
+    const auto seen = update.array<float>("bodies.poses");
+    if (seen.empty()) continue;
+    found = true;
+    EXPECT_EQ(update.json["bodies"]["objects"], nlohmann::json({0, 1}));
+    ASSERT_EQ(seen.size(), 14U);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(seen[7 * i], static_cast<float>(i));
+      EXPECT_EQ(seen[7 * i + 1], 0.5F);
+      EXPECT_EQ(seen[7 * i + 6], 1);
+    }
+  }
+  EXPECT_TRUE(found);
+}
+
 TEST_F(LiveFeedTest, LatePageGetsTheStoredUpdates) {
   LiveFeed::Place early, late;
   for (int update = 0; update < 5; ++update) {

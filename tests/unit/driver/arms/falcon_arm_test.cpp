@@ -64,6 +64,17 @@ TEST_F(FalconGeometry, FindsTheTipFromAnyStart) {
   std::printf("worst error %.3g m, most steps %d\n", worst, max_steps);
 }
 
+TEST_F(FalconGeometry, FindsTheTipFromTheAngles) {
+  double worst = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const Eigen::Vector3d p_true = anywhere();
+    const auto q = arm_.inverse(p_true);
+    ASSERT_TRUE(q) << p_true.transpose();
+    worst = std::max(worst, (tip(*q) - p_true).norm());
+  }
+  EXPECT_LT(worst, 1e-15);
+}
+
 TEST_F(FalconGeometry, HasTheJacobianOfCentralDifferences) {
   constexpr double kStep = 1e-5;  // rad
   double worst = 0;
@@ -193,7 +204,7 @@ TEST_F(FalconGeometry, PoseIsConsistentOrEmptyForAnyAngles) {
       continue;
     }
     for (std::size_t leg = 0; leg < 3; ++leg) {
-      const double cos_a = std::cos(arm_.azimuth[leg]), sin_a = std::sin(arm_.azimuth[leg]);
+      const double cos_a = arm_.outwards[leg].x(), sin_a = arm_.outwards[leg].y();
       const auto k = static_cast<Eigen::Index>(leg);
       const double u = cos_a * p.x() + sin_a * p.y() - arm_.r + arm_.c - arm_.a * std::cos(q[k]);
       const double v = -sin_a * p.x() + cos_a * p.y() - arm_.s + arm_.f;

@@ -18,6 +18,8 @@
 #include "support/scratch.h"
 #include "thimble/driver/transports.h"
 #include "transports/ftdi_line.h"
+#include "transports/ftdi_transport.h"
+#include "wires/wire_table.h"
 
 namespace thimble::driver {
 namespace {
@@ -229,6 +231,24 @@ TEST_F(FtdiWire, ClosesAndCancelsEverything) {
 TEST_F(FtdiWire, ClearsHaltedEndpoints) {
   open();
   EXPECT_EQ(usb_.cleared_halts, 2);
+}
+
+TEST_F(FtdiWire, BulkBoardHasNoStatusBytes) {
+  // The scripted converter puts two status bytes in front; a described board has none, so they are
+  // content here.
+  const BulkEnds ends{.in = 0x82, .out = 0x03, .ftdi = false};
+  auto device = open_bulk_device({.bus = 1, .device = 7}, ends);
+  ASSERT_TRUE(device) << device.error().message;
+  WireLayout layout;
+  layout.framing = WireFraming::kFixed;
+  layout.size = layout.padded = 5;
+  auto wire = start_ftdi_transport(std::move(device).value(), {.described = &layout}, clock_, ends);
+  ASSERT_TRUE(wire) << wire.error().message;
+  wire_ = std::move(wire).value();
+  usb_.say("abc");
+  const std::string message = read();
+  EXPECT_EQ(message.size(), 5u);
+  EXPECT_EQ(message.substr(2), "abc");
 }
 
 TEST_F(FtdiWire, OpenErrorNamesTheReason) {

@@ -86,6 +86,58 @@ double off_cone(const std::vector<Vector3d>& normals, const Vector3d& v) {
   return best;
 }
 
+// Half of the triangles are nearer than all others: the search of the tree ends with them.
+TEST(BallMesh, AFullListOfTrianglesIsComplete) {
+  const auto built = std::make_shared<const ContactMesh>(
+      ContactMesh::build(support::torus(0.02, 0.004, 16, 8)).value());
+  const TriangleTree tree(built);
+  std::vector<NearTriangle> list(static_cast<std::size_t>(built->triangle_count() / 2));
+  for (const Vector3d& q : {Vector3d(0.1, 0, 0), Vector3d(0, -0.1, 0), Vector3d(0.03, 0.04, 0)}) {
+    std::size_t count = 0;
+    const double reach = tree.near(q, 1, list, count);
+    ASSERT_EQ(count, list.size());
+    std::size_t nearer = 0;
+    for (std::int32_t t = 0; t < built->triangle_count(); ++t) {
+      const Vector3d c =
+          closest_point(q, built->position(t, 0), built->position(t, 1), built->position(t, 2));
+      nearer += (q - c).norm() < reach * (1 - 1e-12) ? 1 : 0;
+    }
+    EXPECT_LE(nearer, count);
+  }
+}
+
+// Each triangle that the ball may reach in a step is behind the plane of a feature.
+TEST(BallMesh, EachTriangleInReachIsBehindAFeature) {
+  for (const TriangleMesh& mesh :
+       {support::torus(0.01, 0.002, 40, 4), support::bumpy_sphere(2, 0.01, 0.1, 5)}) {
+    const auto built = std::make_shared<const ContactMesh>(ContactMesh::build(mesh).value());
+    MeshBall ball(std::make_shared<const TriangleTree>(built), make_search(*built, {}), 0.0005);
+    Random random(6);
+    int asked = 0;
+    Vector3d q(0, 0, 0.01);
+    for (int i = 0; i < 6000; ++i) {
+      // Mostly near the last place, so that the list of triangles is that of another centre.
+      q = i % 16 == 0 ? random.in_box(0.02) : Vector3d(q + random.in_box(3e-4));
+      if (ball.inside(q)) continue;
+      double reach = random.uniform(0, random.uniform(0, 1) < 0.5 ? 3e-4 : 3e-3);
+      const auto features = ball.features(q, reach);
+      for (std::int32_t t = 0; t < built->triangle_count(); ++t) {
+        const double gap = ball.feature(t, q).gap;
+        if (!(gap < reach)) continue;
+        ++asked;
+        const bool held = std::any_of(features.begin(), features.end(), [&](const auto& one) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            if (one.n_W.dot(built->position(t, k) - one.p_W) > 1e-12) return false;
+          }
+          return true;
+        });
+        ASSERT_TRUE(held) << i << ", triangle " << t << ", gap " << gap;
+      }
+    }
+    EXPECT_GT(asked, 1000);
+  }
+}
+
 struct Found {
   int ticks = 0, touching = 0, several = 0, bent = 0, off_count = 0;
   double inside = 0;  ///< Greatest lack of distance, m.

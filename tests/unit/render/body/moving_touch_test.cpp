@@ -301,6 +301,33 @@ TEST(HeldTouch, FeelsItsWeightAndSlipsOutOfReach) {
   }
 }
 
+TEST(MovingTouch, ADensityGivesTheMassOfTheMatterInside) {
+  const TriangleMesh mesh = support::box({0.01, 0.02, 0.03});
+  for (const MotionKind kind : {MotionKind::kTranslate, MotionKind::kRigid}) {
+    MotionChoice choice{.kind = kind, .mass = 7};
+    choice.density = 1000;
+    const double mass = 1000 * 0.02 * 0.04 * 0.06;
+    EXPECT_NEAR(mass_of(mesh, choice).value(), mass, 1e-12);
+    // A tip at rest, 1 mm inside of the block for a tick.
+    auto surface = build_object_touch(mesh, {}, surface_of(500, 0)).value();
+    auto object = move_object(std::move(surface), mesh, choice, {500, 0, kTick}).value();
+    driver::DeviceState state;
+    state.dt = kTick;
+    state.p_WT = {0, 0, 0.031};
+    object->update(state);
+    state.p_WT = {0, 0, 0.029};
+    const double f = object->update(state).f_T_W.z();
+    EXPECT_GT(f, 0.4);
+    object->update(state);
+    const double fallen = object->pose().p_WB[2];
+    EXPECT_NEAR(fallen, -1.5 * f * kTick * kTick / mass, 0.7 * f * kTick * kTick / mass);
+    for (const double bad : {1e-3, 1e9, kNaN}) {
+      choice.density = bad;
+      EXPECT_FALSE(mass_of(mesh, choice)) << bad;
+    }
+  }
+}
+
 TEST(MovingTouch, RefusesOrSurvivesInvalidInput) {
   const MotionChoice good{.kind = MotionKind::kRigid, .mass = 0.1};
   const auto refused = [&](const MotionChoice& choice, const TriangleMesh& mesh) {

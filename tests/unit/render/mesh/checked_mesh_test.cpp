@@ -9,6 +9,8 @@
 
 #include "mesh/contact_mesh.h"
 #include "mesh/repair/certainly_valid.h"
+#include "mesh/repair/orient_mesh.h"
+#include "mesh/repair/touching_parts.h"
 #include "support/meshes/shapes.h"
 #include "support/random.h"
 #include "support/tracker_names.h"
@@ -103,6 +105,29 @@ TEST(CertainlyValid, AcceptsSingleBodies) {
     EXPECT_TRUE(surely(mesh));
     EXPECT_TRUE(check_mesh(mesh).touchable());
   }
+}
+
+// A scene does not orient a certainly valid mesh, and does not search it for parts that touch.
+TEST(CertainlyValid, NothingIsTurnedAndNoPartsTouch) {
+  support::Random random(300);
+  int valid = 0;
+  for (int round = 0; round < 300; ++round) {
+    TriangleMesh mesh =
+        round % 2 == 0 ? support::icosphere(1, 0.05) : support::torus(0.05, 0.02, 8, 5);
+    for (Eigen::Vector3d& p : mesh.vertices) {
+      p.x() += 0.03 * (random.uniform(-0.5, 0.5));
+    }
+    if (random.bits() % 4 == 0) mesh.vertices.push_back({0, 0, 0});  // of no triangle
+    if (random.bits() % 4 == 0) std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
+    if (random.bits() % 4 == 0) mesh = inside_out(std::move(mesh));
+    if (!certainly_valid(mesh)) continue;
+    ++valid;
+    EXPECT_EQ(describe(find_touching_parts(mesh)), "");
+    const auto before = mesh.triangles;
+    EXPECT_EQ(describe(orient_mesh(mesh)), "");
+    EXPECT_EQ(mesh.triangles, before);
+  }
+  EXPECT_GT(valid, 100);
 }
 
 TEST(CertainlyValid, AcceptsNoFaultyOrComplexMesh) {

@@ -4,10 +4,17 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <string>
 
+#include "mesh/file/text_words.h"
+#include "support/random.h"
 #include "support/scratch.h"
 #include "support/seed.h"
 #include "thimble/render/mesh/check_mesh.h"
@@ -84,6 +91,63 @@ TEST(LoadMesh, ReadsEveryDialectOfOffText) {
   EXPECT_EQ(triangles_in("off", "COFF 3 1 0\n0 0 0 1 2 3 4\n1 0 0 1 2 3\n0 1 0\n3 0 1 2\n"), 1u);
   EXPECT_EQ(triangles_in("off", "NOFF 3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2"), 1u);
   EXPECT_EQ(triangles_in("off", "STOFF 3 1 0\n0 0 0 0 0\n1 0 0 0 1\n0 1 0 1 0\n3 0 1 2"), 1u);
+}
+
+// Faces of three corners in plain digits are read by a shorter way.
+TEST(LoadMesh, PlainAndOrdinaryFacesOfOffAreEqual) {
+  const std::string vertices = "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n";
+  const MeshFile plain("off", vertices + "3 0 1 2\n3 1 3 2\n3 4 1 0\n");
+  const auto expected = plain.load();
+  ASSERT_TRUE(expected.ok());
+  for (const char* faces :
+       {"3 0 1 2\r\n3 1 3 2\r\n3 4 1 0\r\n", "3  0 1 2\n3 1 3 2 # c\n\n3 4 1 0",
+        "+3 0 1 2\n3 +1 3 2\n3 4 1 0 9 9 9\n", "3 0 1 2 1 1 1\n3\t1\t3\t2\n3 000000000004 1 0\n",
+        "3 0 1\n2\n3 1 3 2\n\n\n3 4 1 0\n"}) {
+    const MeshFile file("off", vertices + faces);
+    const auto mesh = file.load();
+    ASSERT_TRUE(mesh.ok()) << faces << mesh.error().message;
+    EXPECT_EQ(mesh->triangles, expected->triangles) << faces;
+  }
+}
+
+TEST(LoadMesh, PolygonsAreNoPlainFaces) {
+  const std::string vertices = "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
+  EXPECT_EQ(triangles_in("off", vertices + "4 0 1 3\n2\n3 0 1 2\n"), 3u);
+}
+
+TEST(LoadMesh, OtherWordsAreNoPlainNumbers) {
+  const std::string start = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
+  expect_error("off", start + "3 0 1 2x\n", ":6: face 0 refers to vertex \"2x\"");
+  expect_error("off", start + "3 0 1 4294967298\n", ":6: face 0 refers to vertex");
+}
+
+TEST(LoadMesh, LinesAfterPlainFacesAreCounted) {
+  const std::string start = "OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 2 1\n";
+  expect_error("off", start + "3 0 1 3\n", ":8: face 2 refers to vertex \"3\"");
+  expect_error("off", start + "3 0 1 x\n", ":8: face 2 refers to vertex \"x\"");
+}
+
+TEST(LoadMesh, PlainNumbersAreTheNearestDoubles) {
+  support::Random random(20'000);
+  std::string word(64, '\0');
+  for (int round = 0; round < 20'000; ++round) {
+    const double exponent = random.uniform(-15, 15);
+    const double value = (random.uniform(-0.5, 0.5)) * std::pow(10, exponent);
+    const int size = std::snprintf(word.data(), word.size(), "%.*f",
+                                   static_cast<int>(random.bits() % 18), value);
+    const std::string text = word.substr(0, static_cast<std::size_t>(size));
+    const auto read = real_number(text);
+    ASSERT_TRUE(read) << text;
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(*read),
+              std::bit_cast<std::uint64_t>(std::strtod(text.c_str(), nullptr)))
+        << text;
+  }
+  EXPECT_TRUE(std::signbit(real_number("-0").value_or(1)));
+  for (const char* wrong : {"", "-", ".", "-.", "1.2.3", "--1", "1-"}) {
+    EXPECT_FALSE(real_number(wrong)) << wrong;
+  }
+  EXPECT_EQ(real_number(".5"), 0.5);
+  EXPECT_EQ(real_number("5."), 5);
 }
 
 TEST(LoadMesh, SplittingPolygonsKeepsTheirArea) {

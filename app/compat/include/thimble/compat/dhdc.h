@@ -17,6 +17,7 @@
 #define DHD_OFF 0
 #define DHD_UNDEFINED (-1)
 
+#define DHD_MAX_DEVICE 4
 #define DHD_MAX_DOF 8
 #define DHD_MAX_BUTTONS 16
 #define DHD_MAX_STATUS 17
@@ -40,8 +41,12 @@
 #define DHD_DEVICE_CONTROLLER 81
 #define DHD_DEVICE_CONTROLLER_HR 82
 #define DHD_DEVICE_CUSTOM 91
+#define DHD_DEVICE_DLR331 102
+#define DHD_DEVICE_DLR331_LEFT 103
 #define DHD_DEVICE_SIGMA331 104
 #define DHD_DEVICE_SIGMA331_LEFT 105
+#define DHD_DEVICE_SIGMA33P 106
+#define DHD_DEVICE_SIGMA33P_LEFT 107
 #define DHD_DEVICE_LAMBDA331 108
 #define DHD_DEVICE_LAMBDA331_LEFT 109
 #define DHD_DEVICE_LAMBDA33 131
@@ -65,6 +70,20 @@
 #define DHD_STATUS_WRIST_INIT 12
 #define DHD_STATUS_REDUNDANCY 13
 #define DHD_STATUS_FORCE_OFF_CAUSE 14
+
+/* Causes of a force that is off (DHD_STATUS_FORCE_OFF_CAUSE). */
+#define DHD_FORCEOFF_NONE 0
+#define DHD_FORCEOFF_BUTTON 1
+#define DHD_FORCEOFF_VELOCITY 2
+#define DHD_FORCEOFF_WATCHDOG 3
+#define DHD_FORCEOFF_SOFTWARE 4
+#define DHD_FORCEOFF_USBDISCN 5
+#define DHD_FORCEOFF_DEADMAN 6
+
+/* Priorities of dhdStartThread. */
+#define DHD_THREAD_PRIORITY_DEFAULT 0
+#define DHD_THREAD_PRIORITY_HIGH 1
+#define DHD_THREAD_PRIORITY_LOW 2
 
 /* Return values of dhdErrorGetLast. */
 enum {
@@ -94,14 +113,18 @@ enum {
 };
 
 typedef unsigned char uchar;
+typedef unsigned short ushort; /* as glibc has these two */
+typedef unsigned int uint;
 
 #ifdef __cplusplus
 #define THIMBLE_DHD_ID char id = -1
 #define THIMBLE_DHD_MASK unsigned char mask = 0xff
+#define THIMBLE_DHD_DEFAULT(parameter, value) parameter = value
 extern "C" {
 #else
 #define THIMBLE_DHD_ID char id
 #define THIMBLE_DHD_MASK unsigned char mask
+#define THIMBLE_DHD_DEFAULT(parameter, value) parameter
 #endif
 
 /* Errors. */
@@ -137,9 +160,9 @@ bool dhdHasActiveGripper(THIMBLE_DHD_ID);
 int dhdStop(THIMBLE_DHD_ID);
 int dhdEnableForce(unsigned char on, THIMBLE_DHD_ID);
 int dhdReset(THIMBLE_DHD_ID);
-int dhdWaitForReset(int timeout_ms, THIMBLE_DHD_ID);
-int dhdSetGravityCompensation(int on, THIMBLE_DHD_ID);
-int dhdSetBrakes(int on, THIMBLE_DHD_ID);
+int dhdWaitForReset(THIMBLE_DHD_DEFAULT(int timeout_ms, 0), THIMBLE_DHD_ID);
+int dhdSetGravityCompensation(THIMBLE_DHD_DEFAULT(int on, DHD_ON), THIMBLE_DHD_ID);
+int dhdSetBrakes(THIMBLE_DHD_DEFAULT(int on, DHD_ON), THIMBLE_DHD_ID);
 int dhdGetEffectorMass(double* mass, THIMBLE_DHD_ID);
 int dhdSetEffectorMass(double mass, THIMBLE_DHD_ID);
 int dhdGetDeviceAngleRad(double* angle, THIMBLE_DHD_ID);
@@ -192,8 +215,14 @@ int dhdSetForceAndTorque(double fx, double fy, double fz, double tx, double ty, 
 int dhdSetForceAndGripperForce(double fx, double fy, double fz, double gripper, THIMBLE_DHD_ID);
 int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx, double ty,
                                         double tz, double gripper, THIMBLE_DHD_ID);
+int dhdSetForceAndWristJointTorques(double fx, double fy, double fz, double t0, double t1,
+                                    double t2, THIMBLE_DHD_ID);
+int dhdSetForceAndWristJointTorquesAndGripperForce(double fx, double fy, double fz, double t0,
+                                                   double t1, double t2, double gripper,
+                                                   THIMBLE_DHD_ID);
 int dhdSetJointTorques(double torques[DHD_MAX_DOF], THIMBLE_DHD_MASK, THIMBLE_DHD_ID);
-int dhdSetVibration(double frequency, double amplitude, int type, THIMBLE_DHD_ID);
+int dhdSetVibration(double frequency, double amplitude, THIMBLE_DHD_DEFAULT(int type, 0),
+                    THIMBLE_DHD_ID);
 int dhdGetForce(double* x, double* y, double* z, THIMBLE_DHD_ID);
 int dhdGetForceAndTorque(double* fx, double* fy, double* fz, double* tx, double* ty, double* tz,
                          THIMBLE_DHD_ID);
@@ -215,6 +244,13 @@ int dhdGetEncVelocities(double counts_per_s[DHD_MAX_DOF], THIMBLE_DHD_ID);
 int dhdGetJointAngles(double angles[DHD_MAX_DOF], THIMBLE_DHD_ID);
 int dhdGetJointVelocities(double velocities[DHD_MAX_DOF], THIMBLE_DHD_ID);
 int dhdGetJointAngleRange(double least[DHD_MAX_DOF], double most[DHD_MAX_DOF], THIMBLE_DHD_ID);
+int dhdGetDeltaEncoders(int* first, int* second, int* third, THIMBLE_DHD_ID);
+int dhdGetDeltaJointAngles(double* first, double* second, double* third, THIMBLE_DHD_ID);
+int dhdGetWristJointAngles(double* first, double* second, double* third, THIMBLE_DHD_ID);
+int dhdDeltaJointAnglesToJacobian(double first, double second, double third, double rows[3][3],
+                                  THIMBLE_DHD_ID);
+int dhdWristJointAnglesToJacobian(double first, double second, double third, double rows[3][3],
+                                  THIMBLE_DHD_ID);
 int dhdGetDeltaJacobian(double rows[3][3], THIMBLE_DHD_ID);
 int dhdGetWristJacobian(double rows[3][3], THIMBLE_DHD_ID);
 int dhdJointAnglesToInertiaMatrix(double angles[DHD_MAX_DOF], double rows[6][6], THIMBLE_DHD_ID);
@@ -227,6 +263,15 @@ void dhdSleep(double seconds);
 bool dhdKbHit(void);
 char dhdKbGet(void);
 int dhdStartThread(void* function(void*), void* argument, int priority);
+
+/* Functions that are exported and not answered. */
+#ifdef __cplusplus
+#define THIMBLE_DHD_UNANSWERED(result, name) result name(...);
+#else
+#define THIMBLE_DHD_UNANSWERED(result, name) result name();
+#endif
+#include "dhd_unanswered.inc"
+#undef THIMBLE_DHD_UNANSWERED
 
 #ifdef __cplusplus
 }

@@ -25,7 +25,7 @@ int drdPrecisionInit(THIMBLE_DHD_ID);
 
 /* The control thread. */
 int drdStart(THIMBLE_DHD_ID);
-int drdStop(bool leave_force_on, THIMBLE_DHD_ID);
+int drdStop(THIMBLE_DHD_DEFAULT(bool leave_force_on, false), THIMBLE_DHD_ID);
 bool drdIsRunning(THIMBLE_DHD_ID);
 bool drdIsMoving(THIMBLE_DHD_ID);
 bool drdIsFiltering(THIMBLE_DHD_ID);
@@ -39,8 +39,9 @@ int drdSetMotRatioMax(double ratio, THIMBLE_DHD_ID);
 double drdGetMotRatioMax(THIMBLE_DHD_ID);
 
 /* Motion of the arm. */
-int drdMoveToPos(double x, double y, double z, bool wait, THIMBLE_DHD_ID);
-int drdMoveTo(double goal[DHD_MAX_DOF], bool wait, THIMBLE_DHD_ID);
+int drdMoveToPos(double x, double y, double z, THIMBLE_DHD_DEFAULT(bool wait, true),
+                 THIMBLE_DHD_ID);
+int drdMoveTo(double goal[DHD_MAX_DOF], THIMBLE_DHD_DEFAULT(bool wait, true), THIMBLE_DHD_ID);
 int drdTrackPos(double x, double y, double z, THIMBLE_DHD_ID);
 int drdTrack(double goal[DHD_MAX_DOF], THIMBLE_DHD_ID);
 int drdHold(THIMBLE_DHD_ID);
@@ -49,12 +50,43 @@ int drdGetPosMoveParam(double* acceleration, double* speed, double* jerk, THIMBL
 int drdSetPosTrackParam(double acceleration, double speed, double jerk, THIMBLE_DHD_ID);
 int drdGetPosTrackParam(double* acceleration, double* speed, double* jerk, THIMBLE_DHD_ID);
 
+/* Gains of the regulation, as multiples of the default: stiffness (P), damping (D); I is only
+ * stored.
+ */
+int drdSetEncPGain(double gain, THIMBLE_DHD_ID);
+double drdGetEncPGain(THIMBLE_DHD_ID);
+int drdSetEncIGain(double gain, THIMBLE_DHD_ID);
+double drdGetEncIGain(THIMBLE_DHD_ID);
+int drdSetEncDGain(double gain, THIMBLE_DHD_ID);
+double drdGetEncDGain(THIMBLE_DHD_ID);
+
+/* Wrist, gripper and single encoders: bounds are stored, motions are refused, because the arms have
+ * no motors for them. */
+int drdMoveToRot(double a, double b, double c, THIMBLE_DHD_DEFAULT(bool wait, true),
+                 THIMBLE_DHD_ID);
+int drdTrackRot(double a, double b, double c, THIMBLE_DHD_ID);
+int drdMoveToGrip(double gripper, THIMBLE_DHD_DEFAULT(bool wait, true), THIMBLE_DHD_ID);
+int drdTrackGrip(double gripper, THIMBLE_DHD_ID);
+int drdSetRotMoveParam(double acceleration, double speed, double jerk, THIMBLE_DHD_ID);
+int drdGetRotMoveParam(double* acceleration, double* speed, double* jerk, THIMBLE_DHD_ID);
+int drdSetRotTrackParam(double acceleration, double speed, double jerk, THIMBLE_DHD_ID);
+int drdGetRotTrackParam(double* acceleration, double* speed, double* jerk, THIMBLE_DHD_ID);
+int drdSetGripMoveParam(double acceleration, double speed, double jerk, THIMBLE_DHD_ID);
+int drdGetGripMoveParam(double* acceleration, double* speed, double* jerk, THIMBLE_DHD_ID);
+int drdSetGripTrackParam(double acceleration, double speed, double jerk, THIMBLE_DHD_ID);
+int drdGetGripTrackParam(double* acceleration, double* speed, double* jerk, THIMBLE_DHD_ID);
+int drdSetEncMoveParam(double acceleration, double speed, double jerk, THIMBLE_DHD_ID);
+int drdGetEncMoveParam(double* acceleration, double* speed, double* jerk, THIMBLE_DHD_ID);
+int drdSetEncTrackParam(double acceleration, double speed, double jerk, THIMBLE_DHD_ID);
+int drdGetEncTrackParam(double* acceleration, double* speed, double* jerk, THIMBLE_DHD_ID);
+
 /* State and force of the arm, and time. */
 int drdGetPositionAndOrientation(double* x, double* y, double* z, double* a, double* b, double* c,
                                  double* gripper, double rows[3][3], THIMBLE_DHD_ID);
 int drdGetVelocity(double* x, double* y, double* z, double* wx, double* wy, double* wz,
                    double* gripper, THIMBLE_DHD_ID);
 int drdSetForceAndTorqueAndGripperForce(double force[DHD_MAX_DOF], THIMBLE_DHD_ID);
+int drdSetForceAndWristJointTorquesAndGripperForce(double force[DHD_MAX_DOF], THIMBLE_DHD_ID);
 
 double drdGetTime(void);
 void drdSleep(double seconds);

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -17,6 +20,11 @@
 #include "thimble/driver/heat_guard.h"
 #include "thimble/driver/result.h"
 #include "thimble/driver/safety_gate.h"
+
+namespace thimble::driver {
+struct DeviceSettings;
+struct WireTable;
+}  // namespace thimble::driver
 
 namespace thimble::scene {
 
@@ -53,6 +61,28 @@ struct EnergyChoice {
   std::optional<double> slope;                             ///< Slope of the bound, N/m.
 };
 
+/// How the home pose of an arm, in which its encoders are set to `home_counts`, is known.
+enum class HomeMethod {
+  kUnknown,   ///< The arm file does not state it.
+  kStop,      ///< The links are pushed against a mechanical stop.
+  kJig,       ///< A jig or a mark holds the links.
+  kIndex,     ///< Index marks of the encoders.
+  kAbsolute,  ///< Absolute encoders.
+  kButton,    ///< The board sets its counters when its button is pressed.
+};
+
+/// Names of the methods in arm files, from kStop on.
+inline constexpr std::array<std::string_view, 5> kHomeMethods{"stop", "jig", "index", "absolute",
+                                                              "button"};
+
+/// Home pose of an arm, and a second pose by which `thimble calibrate` checks it.
+struct HomePose {
+  HomeMethod how = HomeMethod::kUnknown;  ///< How the home pose is known.
+  /// Position of the tip in the second pose, m, world; empty: no check.
+  std::optional<Eigen::Vector3d> check_p_WT{};
+  double within = 0.005;  ///< Largest distance from it, m.
+};
+
 /// Contents of an arm file: geometry, motors, limits, place and simulation.
 struct ArmFile {
   std::string name;         ///< Name to display.
@@ -64,6 +94,8 @@ struct ArmFile {
   std::vector<driver::BoardKind> boards = {driver::BoardKind::kMbedHid14};
   /// Model number that the board reports in text lines; 0: unknown.
   int board_model = 0;
+  /// Wire of the protocol `described`; otherwise null.
+  std::shared_ptr<const driver::WireTable> wire{};
   /// Geometry, motors, encoders, and the gimbal if one is mounted.
   driver::ArmModel model;
   driver::GateLimits limits;  ///< Limits of the safety gate.
@@ -86,9 +118,26 @@ struct ArmFile {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Rotation of the base in the world.
   Eigen::Vector3d p_WB{0, 0, 0};                       ///< Position of the base in the world, m.
   WorkspaceBox workspace;                              ///< Workspace of the tip.
+  HomePose home{};                                     ///< How the home pose is known and checked.
   /// True if the file has a section `simulation`.
   bool can_simulate = false;
   device_sim::SimulatedArmSettings simulated;  ///< Contents of that section.
+
+  /// Returns the number of motors, 1 to 3: the number of axes of the base along which the tip
+  /// moves. Real-time: safe.
+  int motors() const noexcept { return driver::motor_count(model.geometry); }
+  /// Returns the point closest to p_W (m, world) to which the tip can be led: on the line or in the
+  /// plane of an arm with one or two motors, else p_W itself. Real-time: safe.
+  Eigen::Vector3d on_axes(const Eigen::Vector3d& p_W) const noexcept {
+    if (motors() == 3) return p_W;
+    const Eigen::Vector3d across = Eigen::Vector3d::Ones() - driver::free_axes(motors());
+    Eigen::Vector3d p = p_W - R_WB * (R_WB.transpose() * (p_W - p_WB)).cwiseProduct(across);
+    // Without a rounding error across the line or plane, so that the workspace contains the point.
+    for (int axis = 0; axis < 3; ++axis) {
+      if (workspace.min_W[axis] == workspace.max_W[axis]) p[axis] = workspace.min_W[axis];
+    }
+    return p;
+  }
 
   /// Returns whether the arm has the given geometry: `file.is<driver::DeltaArm>()`. Real-time:
   /// safe.
@@ -105,5 +154,12 @@ struct ArmFile {
 /// above 1e5 N/s, watchdog above 1 s, and stall not below watchdog. Real-time: never from the servo
 /// thread.
 THIMBLE_EXPORT driver::Result<ArmFile> load_arm(const std::filesystem::path& arm);
+
+/// Returns the device settings of an arm file for a loop of `rate` (Hz): place, gate limits, energy
+/// stage, motion watch, heat and workspace walls. `stage`, if set, replaces the arm's energy stage.
+/// `driver::DeviceSettings` is in `thimble/driver/device.h`. Real-time: never from the servo
+/// thread.
+THIMBLE_EXPORT driver::DeviceSettings device_settings(
+    const ArmFile& arm, double rate, std::optional<driver::EnergyStage> stage = {});
 
 }  // namespace thimble::scene

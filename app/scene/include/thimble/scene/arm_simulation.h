@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "thimble/driver/arm_link.h"
 #include "thimble/driver/clock.h"
@@ -49,9 +51,16 @@ class THIMBLE_EXPORT ArmSimulation {
       const ArmFile& file, const HandRoute& hand_W, const std::filesystem::path& firmware = {},
       std::uint64_t seed = 0);
 
-  /// Builds another arm of the same file with a new seed, whose hand follows the same path.
-  /// Equivalent to `make`, without its checks; both arms share one path. The error is that of
-  /// `make`. Real-time: never from the servo thread.
+  /// Lets the hand hold buttons of the arm over time, in order of time. Call before `link`.
+  /// Real-time: never from the servo thread.
+  void plan_buttons(std::vector<ButtonStep> steps) { buttons_ = std::move(steps); }
+  /// Lets `hold_buttons` be called. Without it and a plan, buttons cost nothing in a tick. Call
+  /// before `link`. Real-time: never from the servo thread.
+  void allow_buttons() { buttons_allowed_ = true; }
+
+  /// Builds another arm of the same file with a new seed, whose hand follows the same path
+  /// and holds the same buttons. Equivalent to `make`, without its checks; both arms share one
+  /// path. The error is that of `make`. Real-time: never from the servo thread.
   driver::Result<std::unique_ptr<ArmSimulation>> another(std::uint64_t seed) const;
 
   /// Creates a link to the arm over its own simulated wire. The link does not own the arm or the
@@ -73,6 +82,14 @@ class THIMBLE_EXPORT ArmSimulation {
   /// Real-time: safe.
   void hold(bool still) noexcept;
 
+  /// Holds the buttons of these bits (bit 0 is the first button) in addition to those of the plan,
+  /// until the next call; 0 releases them. Precondition: `allow_buttons`. They are in all reports
+  /// that are read afterwards. The wires of some arms carry no buttons; these are added to what the
+  /// arm reports. Any thread. Real-time: safe.
+  void hold_buttons(std::uint16_t buttons) noexcept {
+    held_buttons_.store(buttons, std::memory_order_relaxed);
+  }
+
   /// Returns the currents requested from the motors, A (Falcon: 1000 motor values).
   Eigen::Vector3d currents() const;
   /// Returns the actual force of the motors on the tip, N in the world. It can differ from the
@@ -84,6 +101,7 @@ class THIMBLE_EXPORT ArmSimulation {
 
   /// Returns the simulated arm if its board sends reports unasked; null for the Falcon.
   const device_sim::SimulatedArm* board_arm() const { return board_arm_.get(); }
+  device_sim::SimulatedArm* board_arm() { return board_arm_.get(); }  ///< As above.
 
  private:
   device_sim::Hand& hand() noexcept;
@@ -96,6 +114,9 @@ class THIMBLE_EXPORT ArmSimulation {
 
   ArmFile file_;
   std::filesystem::path firmware_;
+  std::vector<ButtonStep> buttons_;  // As planned.
+  bool buttons_allowed_ = false;
+  std::atomic<std::uint16_t> held_buttons_{0};
   std::unique_ptr<const device_sim::HandPath> path_;  // As planned.
   std::unique_ptr<device_sim::SimulatedArm> board_arm_;
   std::unique_ptr<device_sim::usb::SimulatedFalcon> falcon_;

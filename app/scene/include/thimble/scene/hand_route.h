@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,6 +25,15 @@ struct HandWaypoint {
 
   /// Returns whether two waypoints are equal.
   bool operator==(const HandWaypoint&) const = default;
+};
+
+/// Buttons that a simulated hand holds from a time until the next step.
+struct ButtonStep {
+  double time = 0;            ///< Time, s; 0: the run begins.
+  std::uint16_t buttons = 0;  ///< One bit each; bit 0 is the arm's first button.
+
+  /// Returns whether two steps are equal.
+  bool operator==(const ButtonStep&) const = default;
 };
 
 /// Target of the hand over time: seconds and points in the world (m).

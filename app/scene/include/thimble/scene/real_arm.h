@@ -16,6 +16,11 @@ namespace thimble::scene {
 
 // Selection and opening of real arms. Real-time: never from the servo thread.
 
+/// Lists the connected boards as driver::find_arms does, and recognises those that installed arm
+/// files describe. An installed file with a mistake is ignored with a warning.
+THIMBLE_EXPORT driver::Result<std::vector<driver::FoundArm>> find_arms(
+    const std::filesystem::path& root = "/");
+
 /// Returns one of the connected boards. `wanted` = "sim" returns none. "auto" returns the only
 /// board that is an arm which Thimble can drive, or none if there is no such board. Otherwise
 /// `wanted` is a name from `thimble devices`; a board of unknown kind is accepted if it can be

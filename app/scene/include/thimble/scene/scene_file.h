@@ -80,11 +80,14 @@ struct SceneBody {
 
 /// Object of a scene: a mesh, a shape or a field, with its place and feel.
 struct THIMBLE_EXPORT SceneObject {
-  std::string name;                 ///< Name, unique in the scene.
-  std::filesystem::path mesh_file;  ///< Mesh file; empty for a shape or a field.
-  bool paged = false;               ///< True if that is a page file, which stays mostly on disk.
+  std::string name;  ///< Name, unique in the scene.
+  /// Mesh file; empty for a shape or a field. Of a mesh in memory its name in messages.
+  std::filesystem::path mesh_file;
+  /// Mesh in memory, in the unit of `scale`, used instead of a file if set (scene_builder.h).
+  RareOptional<std::shared_ptr<const render::TriangleMesh>> mesh;
+  bool paged = false;  ///< True if that is a page file, which stays mostly on disk.
   /// Memory for the pages of a page file, MiB; empty: that of render::PagingSettings.
-  std::optional<std::size_t> page_budget;
+  RareOptional<std::size_t> page_budget;
   std::optional<SceneShape> shape;   ///< Shape, if used instead of a mesh.
   render::FieldBuilder build_field;  ///< Field, if used instead of a mesh; it has no surface.
   std::optional<double> size;        ///< Largest side of the mesh's bounding box, m.
@@ -145,9 +148,10 @@ struct SceneArm {
   /// Arm file that the scene itself names. For a real arm only its stricter limits count, and
   /// only if it is not one of the arm files that come with Thimble (see `apply_arm_policy`).
   std::filesystem::path own_arm_file;
-  ArmPlace place;                  ///< Place in the scene.
-  ArmFile arm;                     ///< Contents of the arm file, moved to `place`.
-  std::vector<HandWaypoint> hand;  ///< Path of the simulated hand.
+  ArmPlace place;                   ///< Place in the scene.
+  ArmFile arm;                      ///< Contents of the arm file, moved to `place`.
+  std::vector<HandWaypoint> hand;   ///< Path of the simulated hand.
+  std::vector<ButtonStep> buttons;  ///< Buttons that the simulated hand holds.
 };
 
 /// Effect of a fault of one of several arms on the others.

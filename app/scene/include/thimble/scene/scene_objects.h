@@ -16,6 +16,7 @@
 #include "thimble/scene/scene_file.h"
 
 namespace thimble::render {
+class CollisionSurfaces;
 struct MapPicture;
 class PagedSurface;
 class SharedBody;
@@ -79,6 +80,11 @@ class THIMBLE_EXPORT SceneObjects {
   /// Returns the offsets of an object in `mesh_W`.
   const MeshPlace& place(std::size_t object) const;
 
+  /// Returns the surface of the shape with which an object collides, at the initial place (W, m).
+  /// The same pointer as `shared_mesh_W`: it collides with its own shape or mesh. Null: it meets
+  /// nothing.
+  std::shared_ptr<const render::TriangleMesh> collision_mesh_W(std::size_t object) const;
+
   /// Returns the map of an object, sampled for drawing; empty if it has none. `scene` is that of
   /// `build`.
   std::optional<render::MapPicture> map_picture(const Scene& scene, std::size_t object) const;
@@ -121,6 +127,8 @@ class THIMBLE_EXPORT SceneObjects {
   std::vector<std::shared_ptr<render::PagedSurface>> pages_;  // Of the objects paged from disk.
   std::vector<std::unique_ptr<render::SceneTouch>> touches_;  // One per arm.
   std::vector<std::shared_ptr<render::SharedBody>> bodies_;
+  std::shared_ptr<const render::CollisionSurfaces> collision_surfaces_;  // Null: nothing meets.
+  std::vector<int> colliding_;  // Number of each object there; -1: it meets nothing.
   struct Meshes;
   std::unique_ptr<Meshes> meshes_;
   std::vector<std::size_t> moving_;

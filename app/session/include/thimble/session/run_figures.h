@@ -15,10 +15,23 @@
 #include "thimble/driver/servo_loop.h"
 #include "thimble/render/page/paging_counters.h"
 #include "thimble/scene/arm_policy.h"
-#include "thimble/session/figure.h"
 #include "thimble/session/run_statistics.h"
 
 namespace thimble::session {
+
+/// A measured value with its goal, from a run, report, study or benchmark.
+struct THIMBLE_EXPORT Figure {
+  std::string name;    ///< Name in lower_snake_case.
+  double value = 0;    ///< Value in `unit`.
+  std::string unit;    ///< Unit; empty for counts.
+  std::string goal;    ///< Goal as a comparison (">= 20", "<= 5", "== 0", "> 1", "< 2"); empty if
+                       ///< there is none.
+  std::string note{};  ///< Source of the value, or why it has no goal; may be empty.
+
+  /// Returns whether the value meets the goal; true without a goal. NaN meets no goal. A goal that
+  /// is not a comparison is never met.
+  bool met() const;
+};
 
 /// Figures of a run: configuration, statistics and end. Plain data for reports, tables and files.
 struct RunFigures {
@@ -53,6 +66,9 @@ struct RunFigures {
   driver::WireCounters wire;   ///< Counters of received messages.
   driver::GateCounters gate;   ///< Counters of the safety gate.
   driver::WallCounters walls;  ///< Counters of the workspace walls.
+  int motors = 3;              ///< Number of motors of the arm.
+  /// Force that an arm with one or two motors could not give.
+  driver::MissingForce missing_force;
   /// Energy stage of the safety gate.
   driver::EnergyStage energy_stage = driver::EnergyStage::kNone;
   double reopen = 0;  ///< Time in which the gate reopens after a gap, s.

@@ -25,6 +25,7 @@
 #include "thimble/driver/transport.h"
 #include "thimble/render/mesh/triangle_mesh.h"
 #include "thimble/scene/arm_policy.h"
+#include "thimble/scene/hand_route.h"
 #include "thimble/session/recording.h"
 #include "thimble/session/run_figures.h"
 #include "thimble/session/tick_observer.h"
@@ -34,6 +35,7 @@ class SceneTouch;
 }
 namespace thimble::scene {
 class ArmSimulation;
+class SceneBuilder;
 class SharedMeshes;
 struct Scene;
 }  // namespace thimble::scene
@@ -100,6 +102,10 @@ struct SessionOptions {
   /// Lets a program move the simulated hand (Session::lead_hand). The hand waits at the start of
   /// the scene's path, and the run has no duration.
   bool hand_by_program = false;
+  /// Lets a program hold buttons of the simulated arm (Session::hold_buttons).
+  bool buttons_by_program = false;
+  /// Buttons that the simulated hand of the first arm holds over time, in order of time.
+  std::vector<scene::ButtonStep> buttons = {};
   /// True if the caller restarts the run when a viewer requests it. Never applies to real arms.
   bool restarts = false;
   /// Name of the shared run. If it is empty, the name is that of the scene, with a number appended
@@ -156,6 +162,13 @@ class THIMBLE_EXPORT Session {
   static driver::Result<std::unique_ptr<Session>> open(const std::filesystem::path& scene,
                                                        const SessionOptions& options = {});
 
+  /// Does the same for a scene made in code (scene/scene_builder.h), whose values are copied. A
+  /// recording contains the text of the scene; to replay it, save the scene and pass its file.
+  /// Fails with viewers (`share`, `share_out`), which read the scene's file: save the scene and
+  /// open the file. Real-time: never from the servo thread.
+  static driver::Result<std::unique_ptr<Session>> open(const scene::SceneBuilder& scene,
+                                                       const SessionOptions& options = {});
+
   /// Opens a session with the scene, meshes, hand paths and options of `other` and a new seed.
   /// Viewers and recording are not copied. If the files have not changed, results are bit-identical
   /// to those of `open`, which is slower. Fails unless `other` uses virtual time and the built-in
@@ -173,6 +186,9 @@ class THIMBLE_EXPORT Session {
   /// builds the objects, starts the recording and makes the run visible to viewers. Real-time:
   /// never from the servo thread.
   static driver::Result<std::unique_ptr<Session>> prepare(const std::filesystem::path& scene,
+                                                          const SessionOptions& options = {});
+  /// Does the same for a scene made in code, as `open` does.
+  static driver::Result<std::unique_ptr<Session>> prepare(const scene::SceneBuilder& scene,
                                                           const SessionOptions& options = {});
   /// Opens the arm of a prepared session. Simulated arms are then active. If any arm of the run is
   /// real, all arms are idle, with zero force, until `activate`. Call once. Real-time: never from
@@ -219,6 +235,11 @@ class THIMBLE_EXPORT Session {
   /// point (ArmSimulation::lead). Precondition: the arm is simulated. Call between two ticks.
   /// Real-time: safe.
   bool lead_hand(const Eigen::Vector3d& p_WH) noexcept;
+  /// Holds buttons of the first arm, if it is simulated, until the next call (one bit each; bit 0
+  /// is the first button; 0 releases them). Returns false, and does nothing, if the arm is real
+  /// or `buttons_by_program` is not set.
+  /// Call like `lead_hand`. Real-time: safe.
+  bool hold_buttons(std::uint16_t buttons) noexcept;
 
   /// Returns the settings that can be changed, with current values. Empty with several arms, or if
   /// SessionOptions::knobs was not set. Any thread. Real-time: never from the servo thread.
@@ -324,6 +345,10 @@ class THIMBLE_EXPORT Session {
   struct Parts;
 
   Session();
+  static driver::Result<std::unique_ptr<Session>> from_setup(
+      driver::Result<std::unique_ptr<Setup>> setup, const SessionOptions& options);
+  static driver::Result<std::unique_ptr<Session>> open_prepared(
+      driver::Result<std::unique_ptr<Session>> session);
 
   std::unique_ptr<Parts> parts_;
 };

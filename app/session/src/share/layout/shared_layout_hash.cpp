@@ -13,13 +13,14 @@ THIMBLE_LAYOUT(thimble::session::SharedTable, offset, count)
 THIMBLE_LAYOUT(thimble::session::SharedArm, name, device, in_scene, shape, unused, numbers, R_WB,
                p_WB, min_W, max_W)
 THIMBLE_LAYOUT(thimble::session::SharedHead, ready, layout, total_bytes, hash, pid, began_ns,
-               period_ns, force_max, tip_radius, wall_clock, hand_by_mouse, paced, restarts,
-               hold_by_key, unused, scene, scene_file, arm_count, arms, objects, knobs, vertices,
-               triangles, map_values, field, shaped, splits, ring)
+               period_ns, force_max, tip_radius, duration, wall_clock, hand_by_mouse, paced,
+               restarts, hold_by_key, unused, scene, scene_file, arm_count, arms, objects, knobs,
+               vertices, triangles, map_values, field, shaped, splits, ring)
 THIMBLE_LAYOUT(thimble::session::SharedObject, name, kind, colour, moves, dents, shaped, map_parts,
-               first_vertex, vertex_count, first_triangle, triangle_count, first_shaped,
-               first_split, max_splits, crease_angle, texture, friction, map_quantity, map_unit,
-               map_min, map_max, first_map_value)
+               first_vertex, vertex_count, first_triangle, triangle_count, collider_first_vertex,
+               collider_vertex_count, collider_first_triangle, collider_triangle_count,
+               first_shaped, first_split, max_splits, crease_angle, texture, friction, map_quantity,
+               map_unit, map_min, map_max, first_map_value)
 THIMBLE_LAYOUT(thimble::session::SharedFieldSample, p_W, f_W)
 THIMBLE_LAYOUT(thimble::session::SharedKnob, name, unit, min, max, initial)
 THIMBLE_LAYOUT(thimble::session::SharedSplit, ready, kept, lost, triangles)
@@ -27,7 +28,7 @@ THIMBLE_LAYOUT(thimble::session::SharedTick, serial, record)
 THIMBLE_LAYOUT(thimble::session::SharedKnobState, wanted, now)
 THIMBLE_LAYOUT(thimble::session::SharedHand, p_WH, active, viewer)
 THIMBLE_LAYOUT(thimble::session::SharedRestart, number, scene)
-THIMBLE_LAYOUT(thimble::session::SharedRequests, pause, stop, loop, key_held, speed, steps,
+THIMBLE_LAYOUT(thimble::session::SharedRequests, pause, stop, loop, key_held, buttons, speed, steps,
                restart_number, restart, record_number, record_path, hand, viewers)
 THIMBLE_LAYOUT(thimble::session::SharedLive, state, closed, recording, ticks, missed, paused,
                record_dropped, shape_moves, recording_path, notice, poses, patch, others, knobs,

@@ -30,7 +30,8 @@ enum class HandMotion : std::uint8_t {
 struct ShelfArm {
   driver::ArmModel model;  ///< Geometry, motors and encoders of the arm.
   /// Settings of the arm. Only tip, hand, weight, drive train, motors, watchdog, wiring and missed
-  /// edges are used; protocol and timing are those of the board.
+  /// edges are used; protocol and timing are those of the board. For the name `described` also its
+  /// described wire.
   SimulatedArmSettings settings;
 };
 
@@ -54,6 +55,10 @@ inline constexpr std::array<ShelfEntry, 4> kShelf{{
     {"polhem-64", "Polhem on a Teensy, HID 16c0:0486, the same reports in 64 bytes"},
     {"falcon", "Novint Falcon, FTDI 0403:cb48, with boot loader, firmware and homing"},
 }};
+
+/// Name of the arm of ShelfOptions::arm on the HID board that its file describes
+/// (FirmwareSettings::described).
+inline constexpr std::string_view kDescribedName = "described";
 
 /// Creates an arm by name. Fails with the list of names if the name is unknown, or if an arm in
 /// `options` has another geometry than the board drives. The hand moves for ten minutes, then

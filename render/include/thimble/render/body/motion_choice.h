@@ -60,14 +60,19 @@ struct THIMBLE_EXPORT CollisionChoice {
 struct CollisionQuality {
   std::size_t iterations = 50;  ///< Iterations of the solver in each step, >= 1.
   std::size_t substeps = 1;     ///< Steps of the solver in each tick, >= 1.
+  /// Ticks in each step of the solver, >= 1; 1 if there are substeps. Between two steps bodies move
+  /// on to the solver's result.
+  std::size_t every = 1;
 };
 
 /// Motion of one object. By default the object starts at rest at the place of its mesh.
 struct THIMBLE_EXPORT MotionChoice {
   MotionKind kind = MotionKind::kTranslate;  ///< Kind of motion.
-  double mass = 0.1;                         ///< Mass, kg, > 0.
-  Eigen::Vector3d gravity_W{0, 0, 0};        ///< Gravity in the world, m/s^2.
-  double damping = 0;                        ///< Damping of translation, N s/m, >= 0.
+  double mass = 0.1;                         ///< Mass, kg, > 0; not used with a density.
+  /// Density, kg/m^3, > 0; the mass is then that of the matter inside of the closed mesh.
+  std::optional<double> density{};
+  Eigen::Vector3d gravity_W{0, 0, 0};  ///< Gravity in the world, m/s^2.
+  double damping = 0;                  ///< Damping of translation, N s/m, >= 0.
   /// Damping of rotation, N m s, >= 0; kRigid only.
   double angular_damping = 0;
   /// Ratio of the object's time to real time, > 0; a smaller ratio makes the object feel heavier.

@@ -74,6 +74,9 @@ struct EffectKind {
   StageBuilder (*read)(SettingsReader& settings, const EffectContext& context);
   /// False if a tip that is held still by the hand does not come to rest on it.
   bool rests = true;
+  /// True if the value of the group is a text that `read` reads ("law": a formula). The group has
+  /// one effect then, and `name` is only shown.
+  bool free_text = false;
 };
 
 /// Effect with its settings from a scene.
@@ -90,7 +93,11 @@ template <SurfaceStage Stage>
 constexpr EffectKind effect_kind() {
   bool rests = true;
   if constexpr (requires { Stage::kRests; }) rests = Stage::kRests;
-  return {Stage::kGroup, Stage::kName, Stage::kOrder,
+  bool free_text = false;
+  if constexpr (requires { Stage::kFreeText; }) free_text = Stage::kFreeText;
+  return {Stage::kGroup,
+          Stage::kName,
+          Stage::kOrder,
           [](SettingsReader& reader, const EffectContext& context) -> StageBuilder {
             typename Stage::Settings settings;
             settings.read(reader, context);
@@ -102,7 +109,8 @@ constexpr EffectKind effect_kind() {
               };
             }
           },
-          rests};
+          rests,
+          free_text};
 }
 
 /// Returns all effects that a scene can name. To add one, write its file and add an entry to the

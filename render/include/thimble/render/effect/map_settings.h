@@ -52,6 +52,11 @@ class THIMBLE_EXPORT MapSettings final : public SettingsReader {
     }
     reject(key, "is not an allowed value");
   }
+  void text(std::string_view key, std::string& value) override {
+    if (const auto given = words_.find(std::string(key)); given != words_.end()) {
+      value = given->second;
+    }
+  }
   void file(std::string_view key, std::filesystem::path&) override {
     reject(key, "cannot be set through MapSettings");
   }

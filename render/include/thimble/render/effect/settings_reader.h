@@ -42,6 +42,8 @@ class THIMBLE_EXPORT SettingsReader {
   /// Reads one of several words as its index in `names`; if it is missing, `value` is unchanged.
   virtual void choice(std::string_view key, std::size_t& value,
                       const std::vector<std::string_view>& names) = 0;
+  /// Reads a text; if it is missing, `value` is unchanged. Texts cannot be set by default.
+  virtual void text(std::string_view key, std::string&) { reject(key, "cannot be set here"); }
   /// Reads the name of an existing file; relative names start in the scene's folder.
   virtual void file(std::string_view key, std::filesystem::path& value) = 0;
   /// Reads a list of maps with at least one entry; calls `read` for each.

@@ -1,0 +1,9 @@
+#include "thimble/version.h"
+
+namespace thimble {
+
+Version version() noexcept {
+  return kVersion;
+}
+
+}  // namespace thimble
