@@ -14,8 +14,11 @@ using Eigen::Vector3d;
 using Corners = std::array<Vector3d, 3>;
 
 // Side of a volume in edges of the equilateral triangle with the mean area. Narrower costs memory,
-// wider costs triangles per query (measured; README.md).
+// wider costs triangles per query. The narrow grid of more triangles than stated exceeds the
+// second-level cache (measured; README.md).
 constexpr double kSideInEdges = 0.8;
+constexpr double kWideSideInEdges = 1.5;
+constexpr std::size_t kWideTrianglesMin = 4000;
 
 // Maximum words of the top and entries of lists per triangle, for any shape of surface.
 constexpr double kTopMax = 1.5;
@@ -84,7 +87,8 @@ void choose_side(VolumeGrid::Parts& parts, const Surface& surface, const SearchF
   const auto n = static_cast<double>(count);
   const double edge = std::sqrt(extent.area / n * (4 / std::sqrt(3.0)));
   const double widest = (extent.high - extent.low).maxCoeff();
-  double side = std::max(kSideInEdges * edge, widest / (4 * VolumeGrid::kBlocksMax - 8));
+  const double edges = count < kWideTrianglesMin ? kSideInEdges : kWideSideInEdges;
+  double side = std::max(edges * edge, widest / (4 * VolumeGrid::kBlocksMax - 8));
   for (;;) {
     lay_out(parts, extent, side);
     const double top = static_cast<double>(parts.blocks[0]) * parts.blocks[1] * parts.blocks[2];

@@ -35,19 +35,22 @@ SegmentInUnits segment_in_units(const Vector3d& way, double rounding, double per
       static_cast<float>(kCorner + off)};
 }
 
-NearestInUnits nearest_in_units(const NearestSoFar& best, double rounding,
-                                double per_step) noexcept {
-  const Vector3d to = per_step * best.to;
-  return {{static_cast<float>(to.x()), static_cast<float>(to.y()), static_cast<float>(to.z())},
-          static_cast<float>(std::abs(to.x()) + std::abs(to.y()) + std::abs(to.z())),
-          static_cast<float>(per_step * per_step * best.squared),
-          static_cast<float>(kCorner + per_step * rounding)};
+NearestInUnits nearest_in_units(double farthest, double rounding, double per_step) noexcept {
+  // A little more, for the rounding to single precision.
+  return {.far = static_cast<float>(per_step * farthest * (1 + 0x1p-22)),
+          .wrong = static_cast<float>(kCorner + per_step * rounding)};
 }
 
 unsigned nearer_of_eight(const NearestInUnits& nearest, const Vector3d& from,
                          const EightTriangles& eight) noexcept {
   return wide_lanes() ? lanes_avx2::nearer_of_eight(nearest, from.data(), eight)
                       : lanes_plain::nearer_of_eight(nearest, from.data(), eight);
+}
+
+unsigned measure_eight(NearestInUnits& nearest, const Vector3d& from, const EightTriangles& eight,
+                       unsigned there, float* low) noexcept {
+  return wide_lanes() ? lanes_avx2::measure_eight(nearest, from.data(), eight, there, low)
+                      : lanes_plain::measure_eight(nearest, from.data(), eight, there, low);
 }
 
 unsigned met_of_eight(const SegmentInUnits& segment, const Vector3d& from,

@@ -22,8 +22,9 @@ using Eigen::Vector3d;
 constexpr double kShortVolumes = 6;
 
 // Longer lists may take longer than the levels of a tree: in the mean per triangle, and at worst (a
-// vertex of valence 64 fills one of 64).
-constexpr double kMeanListMax = 24;
+// vertex of valence 64 fills one of 64). Eight triangles take 15 ns; a tree takes 70 ns longer than
+// lists of ten triangles.
+constexpr double kMeanListMax = 40;
 constexpr std::size_t kListMax = 192;
 
 // Remembers examined triangles, since neighbouring volumes list the same ones. Of those with the
@@ -41,6 +42,36 @@ class Asked {
  private:
   static constexpr std::uint32_t kPlaces = 64;
   std::array<std::int32_t, kPlaces> triangles_;
+};
+
+// The triangles that may be the nearest, each with a distance that it is not nearer than.
+class NearTriangles {
+ public:
+  void add(std::int32_t triangle, float low) noexcept {
+    triangles_[count_] = triangle;
+    low_[count_++] = low;
+  }
+  // Drops all that are farther than a distance.
+  void drop_beyond(float far) noexcept {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      triangles_[kept] = triangles_[i];
+      low_[kept] = low_[i];
+      // Written so that NaN is kept.
+      kept += low_[i] > far ? 0 : 1;
+    }
+    count_ = kept;
+  }
+  // Whether another eight may not fit.
+  bool full() const noexcept { return count_ + EightTriangles::kCapacity > kPlaces; }
+  void clear() noexcept { count_ = 0; }
+  std::span<const std::int32_t> list() const noexcept { return {triangles_.data(), count_}; }
+
+ private:
+  static constexpr std::size_t kPlaces = 64;
+  std::array<std::int32_t, kPlaces> triangles_;
+  std::array<float, kPlaces> low_;
+  std::size_t count_ = 0;
 };
 
 // A straight piece of a path, to test which volumes it meets.
@@ -258,56 +289,74 @@ inline SurfacePoint GridSearch<Surface>::find_closest(const Vector3d& p_W,
   const double side = grid_.side(), per_unit = grid_.parts().per_unit;
   const double room = kGridRoom * side + 0x1p-48 * p.cwiseAbs().maxCoeff();
   NearestPoint<Surface> best(*surface_, frame_, p, reach);
+  NearestInUnits nearest = nearest_in_units(reach + room, room, per_unit);
+  const float none = nearest.far;
   Asked asked;
-  double limit = (reach + room) * (reach + room);
+  NearTriangles near;
+  const auto consider = [&](std::span<const std::int32_t> list) noexcept {
+    if constexpr (kWide) {
+      lanes_avx2::consider_list(*surface_, frame_, list, p.data(), best.so_far());
+    } else {
+      best.consider(list);
+    }
+  };
+  // Bounds the distance of each triangle by its rounded corners. Those that may be the nearest are
+  // decided exactly at the end, all at once.
   const auto visit = [&](const VolumeList& list) noexcept {
     const Vector3d seen = per_unit * (p - list.middle);
-    visit_eights(list, [&](const EightTriangles& eight, unsigned near,
+    visit_eights(list, [&](const EightTriangles& eight, unsigned there,
                            const std::int32_t* triangles) noexcept {
-      if (best.found()) {
-        const NearestInUnits nearest = nearest_in_units(best.so_far(), room, per_unit);
-        near &= kWide ? lanes_avx2::nearer_of_eight(nearest, seen.data(), eight)
-                      : nearer_of_eight(nearest, seen, eight);
+      if (nearest.far < none) {
+        there &= kWide ? lanes_avx2::nearer_of_eight(nearest, seen.data(), eight)
+                       : nearer_of_eight(nearest, seen, eight);
+        if (there == 0) return;
       }
-      std::array<std::int32_t, EightTriangles::kCapacity> fresh;
-      std::size_t left = 0;
-      for (; near != 0; near &= near - 1) {
-        fresh[left] = triangles[std::countr_zero(near)];
-        left += asked.first_time(fresh[left]) ? 1 : 0;
+      alignas(32) std::array<float, EightTriangles::kCapacity> low;
+      unsigned left =
+          kWide ? lanes_avx2::measure_eight(nearest, seen.data(), eight, there, low.data())
+                : measure_eight(nearest, seen, eight, there, low.data());
+      if (near.full()) {
+        near.drop_beyond(nearest.far);
+        if (near.full()) {
+          consider(near.list());
+          near.clear();
+        }
       }
-      const std::span<const std::int32_t> asks(fresh.data(), left);
-      if constexpr (kWide) {
-        lanes_avx2::consider_list(*surface_, frame_, asks, p.data(), best.so_far());
-      } else {
-        best.consider(asks);
+      for (; left != 0; left &= left - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+        if (asked.first_time(triangles[lane])) near.add(triangles[lane], low[lane]);
       }
     });
-    const double ball = std::sqrt(best.squared()) + room;
-    limit = ball * ball;
   };
   // The volume of the point, then wider and wider boxes until one has a triangle within reach; then
   // the ball up to that triangle.
   const VolumeGrid::Place own = grid_.place_of(p);
   const Vector3d own_corner = grid_.corner_of(own);
   grid_.visit_one(own, visit);
+  const double per_step = 1 / per_unit;
+  const auto distance = [&]() noexcept { return nearest.far * per_step; };
   const auto ask_within = [&](double r) noexcept {
     const Vector3d grown = Vector3d::Constant(r + room);
     grid_.visit_box(
         p - grown, p + grown,
         [&](const Vector3d& corner) noexcept {
-          return corner != own_corner && gap_to_box(p, corner, side).squaredNorm() <= limit;
+          const double ball = distance() + room;
+          return corner != own_corner && gap_to_box(p, corner, side).squaredNorm() <= ball * ball;
         },
         visit);
   };
   double width = 0;
-  while (!best.found() && width < reach) {
+  while (!(nearest.far < none) && width < reach) {
     width = width > 0 ? 2 * width : grid_.clearance(p) + side;
     ask_within(std::min(width, reach));
   }
-  const double distance = std::sqrt(best.squared());
-  if (!best.found() || distance <= width) return best.point();
   // If it is near in the middle of a large volume, all others are farther.
-  if (width > 0 || distance + room > grid_.within_volume(p)) ask_within(distance);
+  if (nearest.far < none && distance() > width &&
+      (width > 0 || distance() + room > grid_.within_volume(p))) {
+    ask_within(distance());
+  }
+  near.drop_beyond(nearest.far);
+  consider(near.list());
   return best.point();
 }
 

@@ -9,12 +9,10 @@
 namespace thimble::render {
 namespace {
 
-// From here on, the tree takes at most the grid's time for a free path: 0.9 of it at 16,384
-// triangles, 0.7 at 36,864 (`thimble study accuracy --axis search`); below they are equal. With
-// cold caches, the grid takes 0.6 of the tree's time for a segment at 5,000 and 1.0 to 1.1 at
-// 10,000, for a closest point 1.0 and 1.2 to 1.5 (bench_contact --cold). With its corners it is
-// larger than the second cache there.
-constexpr std::int32_t kTreeTrianglesMin = 8000;
+// From here on, the tree takes less time for a closest point. With cold caches, the grid takes 0.65
+// of the tree's time for a segment at 10,000 and 0.7 at 20,000, for a closest point 0.9 and 1.15
+// (README.md).
+constexpr std::int32_t kTreeTrianglesMin = 15000;
 
 template <class Surface>
 std::shared_ptr<const ContactSearch> build_search(const Surface& surface,
