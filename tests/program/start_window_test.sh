@@ -114,6 +114,44 @@ expect_own 0 '' wait_for 30 run_listed short
 closes
 expect_own 0 '' wait_for 10 no_run_listed short
 
+# The dialog of the desktop, and a typed path.
+click() {
+  xdotool mousemove "$1" "$2"
+  sleep 0.3
+  xdotool mousedown 1
+  sleep 0.2
+  xdotool mouseup 1
+  sleep 0.3
+}
+mkdir desktop
+cat >desktop/zenity <<END
+#!/bin/sh
+echo "\$@" >"$work/asked.txt"
+echo "$work/short.yaml"
+END
+chmod +x desktop/zenity
+PATH=$work/desktop:$PATH open_window
+sleep 2
+click 845 87 # Browse...
+expect_own 0 '' wait_for 30 grep -q file-selection asked.txt
+sleep 1
+press Return
+expect_own 0 '' wait_for 60 run_listed short
+closes
+expect_own 0 '' wait_for 10 no_run_listed short
+cp short.yaml typed.yaml
+open_window
+sleep 2
+click 300 87 # the field
+xdotool type --delay 40 "$work/typed.yaml"
+press Return
+sleep 1
+press Return
+expect_own 0 '' wait_for 60 run_listed typed
+closes
+expect_own 0 '' wait_for 10 no_run_listed typed
+expect_own 0 '/typed.yaml$' cat "$XDG_STATE_HOME/thimble/recent_scenes"
+
 # A scene with a mistake leads back to the scenes, with its error.
 echo 'objects: [' >wrong.yaml
 open_window wrong.yaml
