@@ -63,7 +63,7 @@ driver::Result<SimulatedArm> SimulatedArm::make_of(const driver::ArmModel& board
 
 SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
                            const LoadedTip& tip, const Firmware& firmware, int motors,
-                           std::uint64_t seed) noexcept
+                           std::uint64_t seed)
     : report_period_ns_(settings.firmware.report_period_ns),
       wire_(settings.wire),
       reports_at_once_(wire_.delay_in_ns == 0 && wire_.regular()),
@@ -75,7 +75,9 @@ SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyP
       plant_(std::move(plant)),
       tip_(tip),
       free_B_(driver::free_axes(motors)),
-      firmware_(firmware) {
+      firmware_(firmware),
+      reports_(!reports_at_once_),
+      messages_(!messages_at_once_) {
   sample();
   deliver();
 }

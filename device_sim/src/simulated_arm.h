@@ -131,8 +131,7 @@ class THIMBLE_EXPORT SimulatedArm {
                                 BoardPlant, BoardDriveTrainPlant, RubbingBoardPlant>;
 
   SimulatedArm(const SimulatedArmSettings& settings, Hand hand, AnyPlant plant,
-               const LoadedTip& tip, const Firmware& firmware, int motors,
-               std::uint64_t seed) noexcept;
+               const LoadedTip& tip, const Firmware& firmware, int motors, std::uint64_t seed);
   static driver::Result<SimulatedArm> make_by_inverse(const driver::ArmModel& model,
                                                       const SimulatedArmSettings& settings,
                                                       HandPath path, std::uint64_t seed);

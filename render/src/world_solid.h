@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "thimble/driver/device_state.h"
 #include "thimble/driver/force_law.h"
@@ -22,6 +23,9 @@ struct SolidMove {
   std::int32_t swept_over = -1;   ///< Triangle that has passed over the free proxy; -1: none.
   Eigen::Vector3d p_WP{0, 0, 0};  ///< Place of the proxy on that triangle, m.
   double path = 0;                ///< Path of the surface near the proxy, m.
+  /// Centre of a ball that contains the solid in this tick, W, m.
+  Eigen::Vector3d p_centre{0, 0, 0};
+  double radius = std::numeric_limits<double>::infinity();  ///< Of that ball, m; infinite: unknown.
 };
 
 /// Axis-aligned box, m in W.
@@ -58,7 +62,7 @@ class WorldSolid {
   /// Returns whether the solid may be outside of `box`.
   virtual bool moves() const noexcept { return false; }
   /// Takes the place of this tick. `p_WP` is the proxy of the last tick; `touching` is whether this
-  /// solid was active.
+  /// solid was active. Unless it was, or `swept_over` is set, `path` may be 0.
   virtual SolidMove begin_tick(const driver::DeviceState& /*state*/,
                                const Eigen::Vector3d& /*p_WP*/, bool /*touching*/) noexcept {
     return {};

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "thimble/driver/arm.h"
 
@@ -33,13 +34,18 @@ class WireQueue {
   /// Max. number of frames in flight.
   static constexpr std::size_t kFrames = 256;
 
+  /// Allocates memory for the frames; none if the wire is not `used`, that is, if bytes arrive at
+  /// once and are never pushed. Real-time: never from the servo thread.
+  explicit WireQueue(bool used) : frames_(used ? kFrames : 0) {}
+
   bool empty() const noexcept { return count_ == 0; }  ///< Returns whether no frame is in flight.
 
   /// Returns the next frame to arrive. Precondition: not empty (not checked; otherwise returns an
   /// old frame).
   const WireFrame& front() const noexcept { return frames_[first_]; }
 
-  /// Sends bytes that will arrive at `due_ns`, but not before the frame sent last.
+  /// Sends bytes that will arrive at `due_ns`, but not before the frame sent last. Precondition:
+  /// the wire is used.
   void push(std::span<const std::byte> bytes, std::int64_t due_ns) noexcept {
     if (count_ == room_) make_room();
     WireFrame& frame = frames_[(first_ + count_) & (room_ - 1)];
@@ -81,7 +87,7 @@ class WireQueue {
   // with delay also stays in the cache.
   std::size_t room_ = 4;
   std::uint64_t dropped_ = 0;
-  std::array<WireFrame, kFrames> frames_{};
+  std::vector<WireFrame> frames_;
 };
 
 }  // namespace thimble::device_sim

@@ -100,9 +100,14 @@ ContactWorld::ContactWorld(std::vector<Member> members)
     lift_ = std::max(lift_, kLift * members_[i].solid->rounding());
     const SolidBox& box = tree_.box(static_cast<std::int32_t>(i));
     if (!members_[i].solid->moves()) sides += (box.max - box.min).maxCoeff();
-    if (members_[i].solid->changes()) changing_.push_back(static_cast<std::int32_t>(i));
-    if (members_[i].solid->moves()) moving_.push_back(static_cast<std::int32_t>(i));
+    const bool moves = members_[i].solid->moves();
+    if (members_[i].solid->changes()) {
+      changing_.push_back(static_cast<std::int32_t>(i));
+      ball_of_.push_back(moves ? static_cast<std::int32_t>(moving_.size()) : -1);
+    }
+    if (moves) moving_.push_back(static_cast<std::int32_t>(i));
   }
+  balls_.resize(moving_.size());
   near_min_ = sides / (64 * static_cast<double>(std::max<std::size_t>(members_.size(), 1)));
   near_.reserve(members_.size());
   ghosts_.reserve(members_.size());
@@ -131,12 +136,22 @@ driver::ForceCommand ContactWorld::operator()(const driver::DeviceState& state) 
   return command;
 }
 
+SolidMove ContactWorld::begin_tick(std::size_t changing, const driver::DeviceState& state,
+                                   const Vector3d& p_WP, bool touching) noexcept {
+  const SolidMove move = solid(changing_[changing]).begin_tick(state, p_WP, touching);
+  if (const std::int32_t ball = ball_of_[changing]; ball >= 0) {
+    balls_[static_cast<std::size_t>(ball)] = {.p_centre = move.p_centre, .radius = move.radius};
+  }
+  return move;
+}
+
 // Lets the solids that change take their place of this tick, and carry the proxy along.
 void ContactWorld::carry(const driver::DeviceState& state) noexcept {
   double path = 0;
-  for (const std::int32_t i : changing_) {
+  for (std::size_t k = 0; k < changing_.size(); ++k) {
+    const std::int32_t i = changing_[k];
     const bool touching = is_active(i);
-    const SolidMove move = solid(i).begin_tick(state, p_WQ_, touching);
+    const SolidMove move = begin_tick(k, state, p_WQ_, touching);
     if (move.swept_over >= 0 && !touching && !is_ghost(i)) {
       begin(i, move.swept_over, move.p_WP);
       // Other solids may stop it on its way in front of the surface.
@@ -162,7 +177,7 @@ void ContactWorld::prepare(const driver::DeviceState& expected) const noexcept {
 
 void ContactWorld::start(const driver::DeviceState& state) noexcept {
   const Vector3d& p_WT = state.p_WT;
-  for (const std::int32_t i : changing_) solid(i).begin_tick(state, p_WT, false);
+  for (std::size_t k = 0; k < changing_.size(); ++k) begin_tick(k, state, p_WT, false);
   p_WQ_ = p_WT;
   has_proxy_ = true;
   near_squared_ = -1;
@@ -358,7 +373,12 @@ bool ContactWorld::advance(const Vector3d& goal) noexcept {
   for (const std::int32_t i : near_) {
     if (squared_distance(tree_.box(i), reached_) <= reach) meet(i);
   }
-  for (const std::int32_t i : moving_) meet(i);
+  if (!moving_.empty()) {
+    const double step = (goal - reached_).norm();
+    for (std::size_t k = 0; k < moving_.size(); ++k) {
+      if (balls_[k].meets(reached_, step)) meet(moving_[k]);
+    }
+  }
   if (first < 0) {
     reached_ = goal;
     return false;
@@ -495,8 +515,7 @@ bool ContactWorld::hidden(const Active& active, const ContactState& found) noexc
   const auto near_holds = [&](std::int32_t i) {
     return squared_distance(tree_.box(i), p_W) == 0 && holds(i);
   };
-  return std::any_of(near_.begin(), near_.end(), near_holds) ||
-         std::any_of(moving_.begin(), moving_.end(), holds);
+  return std::any_of(near_.begin(), near_.end(), near_holds) || any_moving_at(p_W, holds);
 }
 
 // Returns whether the active solids were followed where `push` leads.
@@ -549,8 +568,7 @@ bool ContactWorld::enters_solid() noexcept {
   const auto near_holds = [&](std::int32_t i) {
     return squared_distance(tree_.box(i), reached_) == 0 && holds(i);
   };
-  return std::any_of(near_.begin(), near_.end(), near_holds) ||
-         std::any_of(moving_.begin(), moving_.end(), holds);
+  return std::any_of(near_.begin(), near_.end(), near_holds) || any_moving_at(reached_, holds);
 }
 
 void ContactWorld::drop_ended() noexcept {

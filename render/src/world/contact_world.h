@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -105,6 +106,18 @@ class THIMBLE_EXPORT ContactWorld {
     std::array<Eigen::Vector3d, kActiveMax> n;  // its direction
   };
 
+  // Ball around a solid that moves; W, m.
+  struct MovingBall {
+    Eigen::Vector3d p_centre{0, 0, 0};
+    double radius = std::numeric_limits<double>::infinity();
+
+    // Whether the ball may meet one of `reach` around `p`; also if a number is NaN.
+    bool meets(const Eigen::Vector3d& p, double reach) const noexcept {
+      const double sum = (1 + 0x1p-20) * (radius + reach);  // covers the rounding of squares
+      return !((p - p_centre).squaredNorm() > sum * sum);
+    }
+  };
+
   void move(const Eigen::Vector3d& p_WT) noexcept;
   bool settle(const Eigen::Vector3d& p_WT) noexcept;
   bool advance(const Eigen::Vector3d& goal) noexcept;
@@ -127,6 +140,15 @@ class THIMBLE_EXPORT ContactWorld {
   void look_around(const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept;
   void start(const driver::DeviceState& state) noexcept;
   void carry(const driver::DeviceState& state) noexcept;
+  SolidMove begin_tick(std::size_t changing, const driver::DeviceState& state,
+                       const Eigen::Vector3d& p_WP, bool touching) noexcept;
+  template <class Holds>
+  bool any_moving_at(const Eigen::Vector3d& p_W, const Holds& holds) const noexcept {
+    for (std::size_t k = 0; k < moving_.size(); ++k) {
+      if (balls_[k].meets(p_W, 0) && holds(moving_[k])) return true;
+    }
+    return false;
+  }
   void forget_left() noexcept;
   bool is_ghost(std::int32_t solid) const noexcept;
   bool is_active(std::int32_t solid) const noexcept;
@@ -159,7 +181,9 @@ class THIMBLE_EXPORT ContactWorld {
   double near_least_ = 0;  // radius that the steps needed then, m
   std::vector<std::int32_t> near_;
   std::vector<std::int32_t> changing_;  // solids that need begin_tick and end_tick
-  std::vector<std::int32_t> moving_;    // solids that may be anywhere
+  std::vector<std::int32_t> moving_;    // solids that may be outside of their box in `tree_`
+  std::vector<MovingBall> balls_;       // of `moving_`, in this tick
+  std::vector<std::int32_t> ball_of_;   // of `changing_`: number in `balls_`, -1: none
   std::vector<std::int32_t> ghosts_;    // solids in which the tip has been since the first tick
 
   ProxyFilter filter_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "body/motion/body_frame.h"
 #include "thimble/driver/device_state.h"
@@ -20,7 +21,15 @@ template <class Owner>
 class MovingSolid final : public WorldSolid {
  public:
   /// Keeps references. Real-time: never from the servo thread.
-  MovingSolid(Owner& owner, WorldSolid& surface) noexcept : owner_(owner), surface_(surface) {}
+  MovingSolid(Owner& owner, WorldSolid& surface) noexcept
+      : owner_(owner),
+        surface_(surface),
+        keeps_shape_(!surface.changes()),
+        p_B_centre_((surface.box().min + surface.box().max) / 2) {
+    if (keeps_shape_ && !surface.moves()) {
+      radius_ = kMargin * (surface.box().max - p_B_centre_).norm() + surface.rounding();
+    }
+  }
 
   SolidBox box() const noexcept override { return surface_.box(); }
   double rounding() const noexcept override { return surface_.rounding(); }
@@ -38,15 +47,21 @@ class MovingSolid final : public WorldSolid {
     const BodyFrame before = frame_;
     frame_ = owner_.frame_of_tick();
     p_WT_ = state.p_WT;
-    driver::DeviceState in_B = state;
-    in_B.p_WT = to_B(state.p_WT);
-    in_B.v_WT = owner_.velocity_in_B(frame_, state);
     const Eigen::Vector3d p_BP = to_B(p_WP);
-    SolidMove move = surface_.begin_tick(in_B, p_BP, touching);
+    SolidMove move;
+    if (!keeps_shape_) {
+      driver::DeviceState in_B = state;
+      in_B.p_WT = to_B(state.p_WT);
+      in_B.v_WT = owner_.velocity_in_B(frame_, state);
+      move = surface_.begin_tick(in_B, p_BP, touching);
+    }
     if (moved_) {
       const Eigen::Vector3d p_BP_before = before.R_WB.transpose() * (p_WP - before.p_WB);
-      move.path += (p_BP - p_BP_before).norm();
-      if (!touching && move.swept_over < 0) {
+      const double path = (p_BP - p_BP_before).norm();
+      move.path += path;
+      // Written so that an infinite radius is near.
+      const bool far = (p_BP - p_B_centre_).norm() > radius_ + kMargin * path;
+      if (!touching && move.swept_over < 0 && !far) {
         const SolidEntry entry = surface_.first_entry(p_BP_before, p_BP);
         move.swept_over = entry.triangle;
         move.p_WP = p_BP_before + entry.parameter * (p_BP - p_BP_before);
@@ -54,10 +69,12 @@ class MovingSolid final : public WorldSolid {
     }
     moved_ = true;
     move.p_WP = to_W(move.p_WP);
+    move.p_centre = to_W(p_B_centre_);
+    move.radius = radius_;
     return move;
   }
   double end_tick(const Eigen::Vector3d& p_WP, bool touching) noexcept override {
-    const double stored = surface_.end_tick(to_B(p_WP), touching);
+    const double stored = keeps_shape_ ? 0 : surface_.end_tick(to_B(p_WP), touching);
     return stored + owner_.end_tick(touching, p_B_followed_);
   }
 
@@ -119,8 +136,14 @@ class MovingSolid final : public WorldSolid {
     return found_;
   }
 
+  static constexpr double kMargin = 1 + 0x1p-20;  // covers the rounding of lengths
+
   Owner& owner_;
   WorldSolid& surface_;
+  bool keeps_shape_;  // whether `surface_` need not be called in each tick
+  // Ball around the solid in B, m.
+  Eigen::Vector3d p_B_centre_;
+  double radius_ = std::numeric_limits<double>::infinity();
   BodyFrame frame_;  // at the end of this tick
   bool moved_ = false;
   Eigen::Vector3d p_WT_{0, 0, 0};
