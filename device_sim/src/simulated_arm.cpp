@@ -165,6 +165,18 @@ driver::Result<void> SimulatedArm::fix_mass(double mass, const Eigen::Vector3d& 
   return {};
 }
 
+// Without the unused part of the variant and without `tip_`, which only `fix_mass` and `hold_tip`
+// read.
+void SimulatedArm::list_memory(std::vector<std::span<const std::byte>>& memory) const {
+  const auto add = [&](const void* begin, const void* end) {
+    memory.emplace_back(static_cast<const std::byte*>(begin), static_cast<const std::byte*>(end));
+  };
+  std::visit([&](const auto& plant) { add(this, &plant + 1); }, plant_);
+  add(&free_B_, this + 1);
+  memory.push_back(messages_.memory());
+  memory.push_back(reports_.memory());
+}
+
 void SimulatedArm::advance_to(std::int64_t time_ns) noexcept {
   while (time_ns_ < time_ns) {
     std::int64_t next_ns = std::min(time_ns, time_ns_ + ArmPlant::kStepMax_ns);

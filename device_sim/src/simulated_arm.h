@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <variant>
+#include <vector>
 
 #include "board/firmware.h"
 #include "board/wire_queue.h"
@@ -102,6 +103,10 @@ class THIMBLE_EXPORT SimulatedArm {
 
   /// Presses the button on the arm, as a hand would.
   void press_button() noexcept { firmware_.press_button(); }
+
+  /// Appends the memory that the arm uses in each tick, so that a caller with many arms can prefetch
+  /// it. Real-time: never from the servo thread.
+  void list_memory(std::vector<std::span<const std::byte>>& memory) const;
 
   // True state of the simulation, for tests and studies; a driver has no access to it.
 

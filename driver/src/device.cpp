@@ -155,6 +155,22 @@ void Device::begin_activity() noexcept {
   started_ = false;
 }
 
+// Without most of the settings, and without the parts of `motion_` after its state, which only
+// faults and the start of a run read.
+void Device::list_memory(std::vector<std::span<const std::byte>>& memory) const {
+  const auto add = [&](const void* begin, const void* end) {
+    memory.emplace_back(static_cast<const std::byte*>(begin), static_cast<const std::byte*>(end));
+  };
+  constexpr std::size_t kState = 128;  // Bytes of `motion_` that each tick uses [measured].
+  add(this, &settings_);
+  add(&gate_, reinterpret_cast<const std::byte*>(&motion_) + kState);
+  add(&heat_, this + 1);
+  add(work_.get(), work_.get() + 1);
+  add(velocity_.get(), velocity_.get() + 1);
+  if (own_velocity_ != nullptr) add(own_velocity_.get(), own_velocity_.get() + 1);
+  add(walls_.get(), walls_.get() + 1);
+}
+
 void Device::close_lost_link() noexcept {
   delete retired_.exchange(nullptr, std::memory_order_acq_rel);
   delete offered_.exchange(nullptr, std::memory_order_acq_rel);

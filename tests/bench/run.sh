@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # Measures the time of a tick on this machine, as a whole and by part, contact on meshes of many
 # sizes compared with other libraries if they are installed (Debian: libembree-dev libcgal-dev
-# libfcl-dev), contact with meshes on disk (640 MB for two minutes), many arms in one process, and
-# the cost of watching a run (Debian: chromium python3-websockets libjs-three libjs-dygraphs).
+# libfcl-dev libbullet-dev), contact with meshes on disk (640 MB for two minutes), many arms in one
+# process, a world of up to 10^5 objects, and the cost of watching a run (Debian: chromium
+# python3-websockets libjs-three libjs-dygraphs).
 # Prints tables and writes figures.json. Figures are reported, never pass criteria.
 #   tests/bench/run.sh [FOLDER]      FOLDER: where to write (default build/bench)
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 folder=${1:-build/bench}
-app/setup.sh release thimble bench_tick bench_batch bench_contact bench_paged bench_body bench_view
+app/setup.sh release thimble bench_tick bench_batch bench_world bench_contact bench_paged bench_body bench_view
 mkdir -p "$folder"
 build/release/tests/bench/bench_tick --benchmark_repetitions=5 \
   --benchmark_enable_random_interleaving=true \
@@ -17,6 +18,8 @@ build/release/tests/bench/bench_tick --benchmark_repetitions=5 \
   --figures="$folder/figures.json"
 mkdir -p "$folder/batch"
 build/release/tests/bench/bench_batch --figures="$folder/batch/figures.json"
+mkdir -p "$folder/world"
+build/release/tests/bench/bench_world --figures="$folder/world/figures.json"
 mkdir -p "$folder/contact"
 build/release/tests/bench/bench_contact --figures="$folder/contact/figures.json"
 mkdir -p "$folder/paged"

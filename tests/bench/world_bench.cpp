@@ -91,24 +91,24 @@ std::string shape_of(Kind kind, std::size_t i, const WorldItem& item) {
     std::snprintf(line.data(), line.size(), format, numbers...);
     return std::string(line.data());
   };
-  if (kind == Kind::kMeshes) return text("mesh: ball.off, size: %.6f", 2 * r);
+  if (kind == Kind::kMeshes) return text("mesh: ball.off, size: %.5f", 2 * r);
   if (kind == Kind::kBalls && item.cube) {
-    return text("box: {sides: [%.6f, %.6f, %.6f]}", 2 * r, 2 * r, 2 * r);
+    return text("box: {sides: [%.5f, %.5f, %.5f]}", 2 * r, 2 * r, 2 * r);
   }
   // Within the ball of the radius r.
   switch (kind == Kind::kBalls ? 0 : i % 6) {
     case 1:
-      return text("box: {sides: [%.6f, %.6f, %.6f]}", r, r, 1.2 * r);
+      return text("box: {sides: [%.5f, %.5f, %.5f]}", r, r, 1.2 * r);
     case 2:
-      return text("capsule: {radius: %.6f, height: %.6f}", r / 2, r);
+      return text("capsule: {radius: %.5f, height: %.5f}", r / 2, r);
     case 3:
-      return text("cylinder: {radius: %.6f, height: %.6f}", 0.7 * r, 1.2 * r);
+      return text("cylinder: {radius: %.5f, height: %.5f}", 0.7 * r, 1.2 * r);
     case 4:
-      return text("cone: {radius: %.6f, height: %.6f}", 0.7 * r, 1.2 * r);
+      return text("cone: {radius: %.5f, height: %.5f}", 0.7 * r, 1.2 * r);
     case 5:
-      return text("torus: {radius: %.6f, tube: %.6f}", 0.7 * r, 0.3 * r);
+      return text("torus: {radius: %.5f, tube: %.5f}", 0.7 * r, 0.3 * r);
     default:
-      return text("sphere: {radius: %.6f}", r);
+      return text("sphere: {radius: %.5f}", r);
   }
 }
 
@@ -118,6 +118,7 @@ std::filesystem::path write_scene(const std::filesystem::path& folder, Kind kind
   support::Random random(std::uint64_t{12});
   const auto file = folder / "world.yaml";
   std::ofstream text(file);
+  text.precision(4);
   text << "name: world\narm: vintage_phantom\nduration: 1\nhand:\n  path:\n"
           "    - {t: 0, at: [0, 0, 0.03]}\nobjects:\n";
   const std::vector<WorldItem> all = items(count);

@@ -37,6 +37,9 @@ class RunLoop {
   /// Returns the end reason; empty while the run continues.
   std::optional<driver::ServoEnd> end() const noexcept { return end_; }
 
+  /// Returns the observers. Real-time: safe.
+  const std::vector<TickObserver*>& observers() const noexcept { return observers_; }
+
   /// Passes a tick to the observers in the order in which they were added (the loop's sink).
   /// Real-time: safe if each of them is.
   void operator()(const driver::TickRecord& record) noexcept {

@@ -492,6 +492,15 @@ RunRecords& Session::records(std::size_t arm) noexcept {
 driver::Result<void> Session::share(const SessionOptions& options, SharedRun* before) {
   return parts_->share(options, before);
 }
+// In the order in which a tick uses it first.
+void Session::list_memory(std::vector<std::span<const std::byte>>& memory) const {
+  if (setup().simulation() != nullptr) setup().simulation()->list_memory(memory);
+  memory.push_back(std::as_bytes(std::span(this, 1)));
+  memory.push_back(std::as_bytes(std::span(parts_.get(), 1)));
+  memory.push_back(std::as_bytes(std::span(parts_->loop.observers())));
+  setup().objects().touch().list_memory(memory);
+  setup().device().list_memory(memory);
+}
 SharedRun* Session::shared() noexcept {
   return parts_->shared.get();
 }

@@ -67,6 +67,12 @@ class WireQueue {
   /// Returns the number of frames lost because too many were in flight.
   std::uint64_t dropped() const noexcept { return dropped_; }
 
+  /// Returns the memory of the first frame, the only one that is used while at most one is in
+  /// flight; empty if the wire is not used. Real-time: safe.
+  std::span<const std::byte> memory() const noexcept {
+    return std::as_bytes(std::span(frames_).first(std::min<std::size_t>(1, frames_.size())));
+  }
+
  private:
   [[gnu::noinline, gnu::cold]] void make_room() noexcept {
     if (room_ == kFrames) {

@@ -81,6 +81,19 @@ bool SceneTouch::inside(const Eigen::Vector3d& p_W) const noexcept {
   });
 }
 
+void SceneTouch::list_memory(std::vector<std::span<const std::byte>>& memory) const {
+  // Bytes of the law of a shape or mesh with a spring [measured: 360].
+  constexpr std::size_t kLaw = 384;
+  constexpr std::size_t kObjectsMax = 4;
+  memory.push_back(std::as_bytes(std::span(this, 1)));
+  memory.push_back(std::as_bytes(std::span(felt_)));
+  for (std::size_t i = 0; i < std::min(felt_.size(), kObjectsMax); ++i) {
+    const bool is_world = felt_[i].touch == world_.get();
+    memory.emplace_back(reinterpret_cast<const std::byte*>(felt_[i].touch),
+                        is_world ? sizeof(WorldTouch) : kLaw);
+  }
+}
+
 const ContactWorld* SceneTouch::world() const noexcept {
   return world_ ? &world_->world() : nullptr;
 }

@@ -7,6 +7,7 @@
 #include "board/sim_transport.h"
 #include "hand/button_plan.h"
 #include "hand/place_text.h"
+#include "thimble/driver/joint_model.h"
 #include "thimble/driver/wire_link.h"
 #include "usb/simulated_falcon.h"
 
@@ -174,7 +175,21 @@ std::unique_ptr<driver::ArmLink> ArmSimulation::link(driver::Clock& clock) {
   auto arm = file_.simulated.firmware.ideal_encoders && !falcon_
                  ? driver::make_ideal_arm(file_.model)
                  : driver::make_arm(file_.protocol, file_.model, file_.wire.get());
+  link_memory_.clear();
+  if (!falcon_) {
+    const auto add = [&](const void* begin, std::size_t size) {
+      link_memory_.emplace_back(static_cast<const std::byte*>(begin), size);
+    };
+    add(wire.get(), sizeof(device_sim::SimTransport));
+    // An arm is the model of its geometry and a pointer.
+    std::visit(
+        [&]<class Geometry>(const Geometry&) {
+          add(arm.get(), sizeof(driver::JointModel<Geometry>) + sizeof(void*));
+        },
+        file_.model.geometry);
+  }
   auto link = std::make_unique<driver::WireLink>(std::move(wire), std::move(arm));
+  if (!falcon_) link_memory_.push_back(std::as_bytes(std::span(link.get(), 1)));
   if (buttons_.empty() && !buttons_allowed_) return link;
   return std::make_unique<ButtonLink>(std::move(link), clock, buttons_, held_buttons_);
 }
@@ -185,6 +200,12 @@ device_sim::Hand& ArmSimulation::hand() noexcept {
 
 void ArmSimulation::hold(bool still) noexcept {
   hand().hold(still);
+}
+
+void ArmSimulation::list_memory(std::vector<std::span<const std::byte>>& memory) const {
+  if (!board_arm_) return;
+  board_arm_->list_memory(memory);
+  memory.insert(memory.end(), link_memory_.begin(), link_memory_.end());
 }
 
 void ArmSimulation::settle(std::int64_t now_ns) noexcept {

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "thimble/driver/arm_link.h"
 #include "thimble/driver/clock.h"
@@ -272,6 +274,10 @@ class THIMBLE_EXPORT Device {
   const HeatGuard& heat() const noexcept { return heat_; }
   /// Returns the capabilities of the arm. Real-time: safe.
   const ArmTraits& traits() const noexcept { return traits_; }
+
+  /// Appends the memory that `read` and `write` use in each tick, without that of the link, so that
+  /// a caller with many devices can prefetch it. Real-time: never from the servo thread.
+  void list_memory(std::vector<std::span<const std::byte>>& memory) const;
 
  private:
   Device(std::unique_ptr<ArmLink> link, const DeviceSettings& settings) noexcept;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "thimble/driver/device_state.h"
@@ -57,6 +58,11 @@ class THIMBLE_EXPORT SceneTouch {
   void prepare(const driver::DeviceState& expected) const noexcept {
     for (const Felt& felt : felt_) felt.touch->prepare(expected);
   }
+
+  /// Appends the memory of the force law that each tick uses, as far as it belongs to this scene
+  /// alone, so that a caller with many scenes can prefetch it; of at most four objects. Real-time:
+  /// never from the servo thread.
+  void list_memory(std::vector<std::span<const std::byte>>& memory) const;
 
   /// Returns whether a point (W, m) is inside an object that has neither moved nor deformed. For
   /// checks outside of the servo loop. Real-time: safe unless an object is paged from disk; the

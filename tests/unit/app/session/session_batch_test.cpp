@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -122,6 +125,32 @@ TEST_F(SessionBatchTest, StepDoesNotAllocate) {
             }),
             0);
   EXPECT_TRUE(batch->newest()[0].in_contact);
+}
+
+// Less than 9 KB; a whole run takes some 60 KB.
+TEST_F(SessionBatchTest, ARunListsTheMemoryOfItsTicks) {
+  for (const char* scene : {"rubber", "blocks"}) {
+    const auto batch = open(scene, 2);
+    const Session& run = batch->run(1);
+    std::vector<std::span<const std::byte>> memory;
+    run.list_memory(memory);
+    const auto holds = [&](const void* place) {
+      const auto* byte = static_cast<const std::byte*>(place);
+      return std::any_of(memory.begin(), memory.end(), [&](const auto& part) {
+        return byte >= part.data() && byte < part.data() + part.size();
+      });
+    };
+    EXPECT_TRUE(holds(&run.newest())) << scene;
+    EXPECT_TRUE(holds(&run.device())) << scene;
+    EXPECT_TRUE(holds(&run.device().state())) << scene;
+    EXPECT_TRUE(holds(&run.device().f_sent_W())) << scene;
+    EXPECT_TRUE(holds(&run.device().gate())) << scene;
+    EXPECT_TRUE(holds(run.simulation()->board_arm())) << scene;
+    EXPECT_TRUE(holds(&run.touch())) << scene;
+    std::size_t bytes = 0;
+    for (const auto& part : memory) bytes += part.size();
+    EXPECT_LT(bytes, 9'000U) << scene;
+  }
 }
 
 TEST_F(SessionBatchTest, KeepsTheRequestedTicks) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -17,6 +18,7 @@
 #include "support/box_union.h"
 #include "support/heap_guard.h"
 #include "support/meshes/shapes.h"
+#include "support/random.h"
 #include "thimble/driver/device_state.h"
 #include "thimble/render/build_object_touch.h"
 #include "thimble/render/scene_touch.h"
@@ -190,6 +192,31 @@ TEST(WorldBody, ABodyThatSweepsOverTheTipCarriesItToAWall) {
     EXPECT_GT(scene.world()->proxy().x(), -0.01);
   }
   EXPECT_LT(least, -1);
+}
+
+TEST(WorldBody, AFastTurningBodyMeetsAFreeTipFromAnywhere) {
+  // A cube comes from 20 mm away, with 2 mm per tick.
+  support::Random random(std::uint64_t{21});
+  for (int i = 0; i < 100; ++i) {
+    const Vector3d from = random.direction();
+    Objects objects;
+    objects.push_back(
+        moving({.centre = 0.02 * from, .half = {0.005, 0.005, 0.005}},
+               {.kind = i % 2 == 0 ? MotionKind::kRigid : MotionKind::kTranslate,
+                .mass = 10,
+                .v_W = -2 * from,
+                .omega_W = i % 2 == 0 ? Vector3d(20 * random.direction()) : Vector3d::Zero()}));
+    objects.push_back(block({.centre = {0, 0, -0.1}, .half = {0.04, 0.04, 0.01}}, kGodObject));
+    SceneTouch scene(std::move(objects));
+    Tip tip(scene);
+    int met = -1;
+    for (int k = 0; k < 12 && met < 0; ++k) {
+      if (tip.at({0, 0, 0}).touch.in_contact) met = k;
+    }
+    // The surface is 5 to 8.7 mm before the middle of the cube.
+    EXPECT_GE(met, 5) << i;
+    EXPECT_LE(met, 8) << i;
+  }
 }
 
 TEST(WorldBody, AMovableBlockOnATableIsPushedBySide) {

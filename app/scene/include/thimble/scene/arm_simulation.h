@@ -2,10 +2,12 @@
 
 #include <Eigen/Core>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "thimble/driver/arm_link.h"
@@ -67,6 +69,11 @@ class THIMBLE_EXPORT ArmSimulation {
   /// clock. Real-time: never from the servo thread.
   std::unique_ptr<driver::ArmLink> link(driver::Clock& clock);
 
+  /// Appends the memory that the arm and its link use in each tick, so that a caller with many arms
+  /// can prefetch it; nothing for the Falcon. Valid after `link`, while the link exists. Real-time:
+  /// never from the servo thread.
+  void list_memory(std::vector<std::span<const std::byte>>& memory) const;
+
   /// Advances the arm after the end of the loop, so that the last message reaches it. Real-time:
   /// safe.
   void settle(std::int64_t now_ns) noexcept;
@@ -120,6 +127,7 @@ class THIMBLE_EXPORT ArmSimulation {
   std::unique_ptr<const device_sim::HandPath> path_;  // As planned.
   std::unique_ptr<device_sim::SimulatedArm> board_arm_;
   std::unique_ptr<device_sim::usb::SimulatedFalcon> falcon_;
+  std::vector<std::span<const std::byte>> link_memory_;  // Of the last link.
 };
 
 }  // namespace thimble::scene

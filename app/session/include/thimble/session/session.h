@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -334,6 +335,10 @@ class THIMBLE_EXPORT Session {
   RunRecords& records() noexcept;
   const RunRecords& records() const noexcept;     ///< Const overload.
   RunRecords& records(std::size_t arm) noexcept;  ///< Returns the observers of the given arm.
+  /// Appends the memory that the first arm uses in each tick and that belongs to this run alone, so
+  /// that a caller with many runs can prefetch it. Precondition: the arm is open. Real-time: never
+  /// from the servo thread.
+  void list_memory(std::vector<std::span<const std::byte>>& memory) const;
   /// Returns the shared state that viewers read; null if the run is not shared.
   SharedRun* shared() noexcept;
   /// Makes a run visible to viewers, as requested by `options`, if it was prepared without viewers.

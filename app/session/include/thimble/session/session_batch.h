@@ -56,10 +56,22 @@ class THIMBLE_EXPORT SessionBatch {
  private:
   SessionBatch() = default;
   void step_one(std::size_t i, std::uint32_t ticks) noexcept;
+  void list_memory(std::size_t i);
+
+  // Cache lines that a tick of a run uses.
+  struct Lines {
+    const std::byte* first = nullptr;
+    std::size_t count = 0;
+  };
+  enum class Half : std::uint8_t { kFirst, kSecond };
+  void prefetch_next(std::size_t i, Half half) const noexcept;
 
   std::unique_ptr<Session> like_;  // Template for `open_like`; it never runs.
   std::vector<std::unique_ptr<Session>> runs_;
   std::vector<driver::TickRecord> newest_;
+  // Of all runs in order, `parts_of_run_` for each.
+  std::vector<Lines> lines_;
+  std::size_t parts_of_run_ = 0;
 };
 
 }  // namespace thimble::session
