@@ -104,8 +104,8 @@ class THIMBLE_EXPORT SimulatedArm {
   /// Presses the button on the arm, as a hand would.
   void press_button() noexcept { firmware_.press_button(); }
 
-  /// Appends the memory that the arm uses in each tick, so that a caller with many arms can prefetch
-  /// it. Real-time: never from the servo thread.
+  /// Appends the memory that the arm uses in each tick, so that a caller with many arms can
+  /// prefetch it. Real-time: never from the servo thread.
   void list_memory(std::vector<std::span<const std::byte>>& memory) const;
 
   // True state of the simulation, for tests and studies; a driver has no access to it.
