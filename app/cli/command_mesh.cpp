@@ -372,6 +372,7 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
       ->check(CLI::PositiveNumber)
       ->needs("--repair");
   add_mesh_page_command(*command, exit_code);
+  add_mesh_cache_command(*command, exit_code);
   add_mesh_generate_command(*command, exit_code);
   add_example(*command, "thimble mesh scan.ply --repair scan.off",
               "The exit code is 2 if the mesh cannot be touched.\n"

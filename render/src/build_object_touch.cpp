@@ -173,7 +173,7 @@ Built build_object_touch(const StillSurface& still, const TriangleMesh& mesh_W,
                          const ContactChoice& choice, const SurfaceChoice& surface) {
   if (auto fits = check_ball(choice, surface); !fits) return fits.error();
   if (auto fits = check_maps(surface, mesh_W.triangles.size()); !fits) return fits.error();
-  if (!surface.dent) {
+  if (!surface.dent && !still.connected) {
     auto parts = overlapping_parts(mesh_W);
     if (parts.size() > 1) return parts_touch(std::move(parts), still.mesh, choice, surface);
   }

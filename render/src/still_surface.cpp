@@ -6,6 +6,7 @@
 
 #include "mesh/repair/checked_mesh.h"
 #include "search/make_search.h"
+#include "search/tree_search.h"
 
 namespace thimble::render {
 namespace {
@@ -57,6 +58,7 @@ driver::Result<StillSurface> prepare_packed(const TriangleMesh& mesh_W, const Co
   StillSurface still;
   still.packed = std::make_shared<const PackedSurface>(std::move(packed).value());
   still.search = make_search(*still.packed, choice.search);
+  still.connected = is_valid;
   return still;
 }
 
@@ -101,6 +103,24 @@ driver::Result<void> check_profile(const ContactChoice& choice) {
       "\"sized_band\"."};
 }
 
+std::optional<StoredSurface> stored_data(const StillSurface& still) noexcept {
+  const auto* tree = dynamic_cast<const TreeSearch<PackedSurface>*>(still.search.get());
+  if (!still.packed || tree == nullptr) return {};
+  return StoredSurface{still.packed->frame(), still.packed->triangles(), tree->nodes().all()};
+}
+
+std::optional<StillSurface> restore_surface(const PackedSurface::Frame& frame,
+                                            PackedSurface::Triangles triangles,
+                                            TreeNodes::Nodes nodes) {
+  auto packed = PackedSurface::restore(frame, std::move(triangles));
+  TreeNodes tree;
+  if (!packed || !tree.restore(packed->triangles().size(), std::move(nodes))) return {};
+  StillSurface still;
+  still.packed = std::make_shared<const PackedSurface>(*std::move(packed));
+  still.search = std::make_shared<const TreeSearch<PackedSurface>>(*still.packed, std::move(tree));
+  return still;
+}
+
 driver::Result<StillSurface> prepare_still_surface(const TriangleMesh& mesh_W,
                                                    const ContactChoice& choice, bool is_valid) {
   if (auto fits = check_choice(choice); !fits) return fits.error();
@@ -114,6 +134,7 @@ driver::Result<StillSurface> prepare_still_surface(const TriangleMesh& mesh_W,
   StillSurface still;
   still.mesh = std::make_shared<const ContactMesh>(std::move(prepared).value());
   still.search = make_search(*still.mesh, choice.search);
+  still.connected = is_valid;
   if (!needs_normals(choice)) return still;
   const bool in_bands = choice.blending == BlendingChoice::kFixedBand ||
                         choice.blending == BlendingChoice::kSizedBand;

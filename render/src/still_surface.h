@@ -1,12 +1,15 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
 
 #include "ball/triangle_tree.h"
 #include "compact_mesh/packed_surface.h"
 #include "mesh/contact_mesh.h"
 #include "mesh/smooth_normals.h"
 #include "search/contact_search.h"
+#include "search/tree_nodes.h"
 #include "thimble/driver/export.h"
 #include "thimble/driver/result.h"
 #include "thimble/render/build_object_touch.h"
@@ -26,7 +29,25 @@ struct StillSurface {
   std::shared_ptr<const SmoothNormals> normals;
   /// Tree over the triangles of `mesh` for a tip that is a ball; null for a point.
   std::shared_ptr<const TriangleTree> triangles;
+  bool connected = false;  ///< Whether the mesh is known to be connected, so of one part.
 };
+
+/// Arrays and numbers that a prepared surface can be restored from. They belong to it.
+struct StoredSurface {
+  PackedSurface::Frame frame;
+  std::span<const PackedTriangle> triangles;
+  std::span<const BoxNode> nodes;  ///< Of its search.
+};
+
+/// Returns the data of a prepared surface to store. None if it consists of more than packed
+/// triangles and a tree over them (tracker `compact`, search `tree`). Real-time: safe.
+THIMBLE_EXPORT std::optional<StoredSurface> stored_data(const StillSurface& still) noexcept;
+
+/// Returns the surface of stored data; bit-identical to the one that was stored. None if a number
+/// is out of range. Real-time: never from the servo thread.
+THIMBLE_EXPORT std::optional<StillSurface> restore_surface(const PackedSurface::Frame& frame,
+                                                           PackedSurface::Triangles triangles,
+                                                           TreeNodes::Nodes nodes);
 
 /// Fails if a choice names a profile of bands but no bands. Real-time: never from the servo thread.
 driver::Result<void> check_profile(const ContactChoice& choice);

@@ -2,8 +2,9 @@
 # Measures the time of a tick on this machine, as a whole and by part, contact on meshes of many
 # sizes compared with other libraries if they are installed (Debian: libembree-dev libcgal-dev
 # libfcl-dev libbullet-dev), contact with meshes on disk (640 MB for two minutes), many arms in one
-# process, a world of up to 10^5 objects, and the cost of watching a run (Debian: chromium
-# python3-websockets libjs-three libjs-dygraphs).
+# process, a world of up to 10^5 objects, the time from the command to the first tick (200 MB for a
+# minute), and the cost of watching a run (Debian: chromium python3-websockets libjs-three
+# libjs-dygraphs).
 # Prints tables and writes figures.json. Figures are reported, never pass criteria.
 #   tests/bench/run.sh [FOLDER]      FOLDER: where to write (default build/bench)
 set -euo pipefail
@@ -29,6 +30,8 @@ mkdir -p "$folder/body"
 build/release/tests/bench/bench_body --benchmark_repetitions=5 \
   --benchmark_report_aggregates_only=true --figures="$folder/body/figures.json"
 build/release/tests/bench/bench_view
+mkdir -p "$folder/start"
+/usr/bin/python3 tests/bench/start_bench.py build/release "$folder/start/figures.json"
 if app/optional_parts.sh install browser; then
   app/fetch_meshes.sh >/dev/null
   mkdir -p "$folder/watch"

@@ -14,6 +14,7 @@
 #include "hand/button_plan.h"
 #include "hold_key.h"
 #include "log/logger.h"
+#include "meshes/cache/cache_folder.h"
 #include "ros2/ros_module.h"
 #include "share/shared_layout.h"
 #include "share/viewer_process.h"
@@ -153,6 +154,7 @@ session::SessionOptions session_options(const RunOptions& options, const session
   asked.several_arms = true;
   asked.quality = options.quality;
   asked.budget = options.budget;
+  if (options.mesh_cache) asked.mesh_cache = scene::chosen_mesh_cache();
   return asked;
 }
 
@@ -297,6 +299,9 @@ void add_computation_options(CLI::App& command, RunOptions& options) {
       ->group(kComputation);
   command.add_option("--seed", options.seed, "Seed of all random numbers (default: the scene's)")
       ->group(kComputation);
+  command
+      .add_flag("--mesh-cache", options.mesh_cache, "Store large prepared meshes for later runs")
+      ->group(kComputation);
 }
 
 void add_output_options(CLI::App& command, RunOptions& options) {
@@ -347,7 +352,10 @@ constexpr const char* kRunNotes =
     "           auto: lowest cost with errors below perception. With --budget, auto\n"
     "           is the highest accuracy within this time for all objects. Times and\n"
     "           errors are stored results of `thimble study accuracy`, from another\n"
-    "           machine. The choices are printed.";
+    "           machine. The choices are printed.\n"
+    "--mesh-cache  Meshes of 10^6 triangles and more, at most 2 GiB, in\n"
+    "           $THIMBLE_MESH_CACHE or ~/.cache/thimble/prepared. Results are\n"
+    "           bit-identical. `thimble mesh cache` lists and clears them.";
 
 }  // namespace
 

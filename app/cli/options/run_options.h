@@ -40,6 +40,7 @@ struct RunOptions {
   std::optional<double> speed;  // times real time
   std::string quality = "normal";
   std::optional<double> budget;  // ns
+  bool mesh_cache = false;
   bool yes = false;
   bool unchecked = false;
   bool homed = false;

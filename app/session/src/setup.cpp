@@ -10,6 +10,7 @@
 
 #include "arm/report_timeout.h"
 #include "log/logger.h"
+#include "meshes/cache/cache_folder.h"
 #include "scene_poses.h"
 #include "text_file.h"
 #include "thimble/driver/device.h"
@@ -30,6 +31,14 @@ std::string full_path(const std::filesystem::path& file) {
 bool any_real_in(const SessionOptions& options) {
   return options.real_arm || std::any_of(options.real_arms.begin(), options.real_arms.end(),
                                          [](const auto& use) { return use.second.has_value(); });
+}
+
+/// Returns a store of meshes for one session. `cache`: SessionOptions::mesh_cache.
+std::shared_ptr<scene::SharedMeshes> own_meshes(std::filesystem::path cache) {
+  if (cache.empty()) cache = scene::mesh_cache_of_environment().value_or(cache);
+  if (cache.empty()) return std::make_shared<scene::SharedMeshes>();
+  return std::make_shared<scene::SharedMeshes>(
+      scene::MeshCacheChoice{.folder = std::filesystem::absolute(cache)});
 }
 
 }  // namespace
@@ -64,7 +73,7 @@ driver::Result<std::unique_ptr<Setup>> Setup::prepare(std::unique_ptr<Setup> set
   setup->plan_.hold = options.hold;
   setup->plan_.endless = options.endless;
   setup->plan_.keep = options.keep;
-  setup->plan_.meshes = options.meshes ? options.meshes : std::make_shared<scene::SharedMeshes>();
+  setup->plan_.meshes = options.meshes ? options.meshes : own_meshes(options.mesh_cache);
   setup->plan_.real_time = options.clock == ClockKind::kWall || any_real_in(options);
   setup->plan_.paced =
       options.clock == ClockKind::kPaced && !setup->plan_.real_time && !options.own_clock;

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -12,11 +10,10 @@
 
 namespace thimble::render {
 
-/// Computes the packed corner normals and the crease bits of packed triangles whose neighbours are
-/// known. `triangles` have the order of `packed`. Returns -1, or the number of a triangle that has
-/// no area. Real-time: never from the servo thread.
+/// Computes the packed corner normals and the crease bits of unfinished triangles
+/// (unfinished_triangle.h) whose corners and neighbours are known. `half_edges` are theirs. Returns
+/// -1, or the number of a triangle that has no area. Real-time: never from the servo thread.
 std::ptrdiff_t assign_corner_normals(const std::vector<Eigen::Vector3d>& vertices,
-                                     const std::vector<std::array<std::int32_t, 3>>& triangles,
                                      const HalfEdges& half_edges, double crease_angle,
                                      std::span<PackedTriangle> packed);
 

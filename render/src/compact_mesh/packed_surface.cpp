@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "compact_mesh/corner_normals.h"
 #include "compact_mesh/sse2.h"
 #include "compact_mesh/surface_rise.h"
+#include "compact_mesh/unfinished_triangle.h"
 #include "mesh/half_edges.h"
 #include "mesh/parallel_split.h"
 
@@ -32,22 +34,22 @@ std::size_t index(std::int32_t i) noexcept {
 
 // Returns the error that names the first triangle without its own neighbour over each edge.
 // Precondition: there is one.
-driver::Error first_unpaired(std::span<const PackedTriangle> packed,
-                             std::span<const std::array<std::int32_t, 3>> triangles,
-                             const HalfEdges& half_edges) {
+driver::Error first_unpaired(std::span<const PackedTriangle> packed, const HalfEdges& half_edges) {
   std::size_t t = 0, k = 0;
   for (;; k = 0, ++t) {
+    const auto& own = unfinished::corners(packed[t]);
     const auto paired = [&](std::size_t edge) {
-      const std::int32_t from = triangles[t][edge], to = triangles[t][(edge + 1) % 3];
+      const std::int32_t from = own[edge], to = own[(edge + 1) % 3];
       return half_edges.opposite(to, from) >= 0 && half_edges.opposite(from, to) >= 0;
     };
     while (k < 3 && paired(k)) ++k;
     if (k < 3) break;
   }
+  const auto& own = unfinished::corners(packed[t]);
   return refusal(index(packed[t].source()),
                  "lacks a unique neighbour of the same orientation across its edge from vertex " +
-                     std::to_string(triangles[t][k]) + " to vertex " +
-                     std::to_string(triangles[t][(k + 1) % 3]) + ".");
+                     std::to_string(own[k]) + " to vertex " + std::to_string(own[(k + 1) % 3]) +
+                     ".");
 }
 
 // A corner or a vertex on the lattice.
@@ -64,7 +66,13 @@ LatticePoint on_lattice(const Vector3d& p) noexcept {
 }
 
 // Returns the order of the packed triangles.
-std::vector<PlacedIndex> order_of(const TriangleMesh& mesh, std::span<const LatticePoint> points) {
+std::vector<PlacedIndex> order_of(const TriangleMesh& mesh, const PackedSurface& lattice) {
+  std::vector<LatticePoint> points(mesh.vertices.size());
+  parallel_split(points.size(), [&](std::size_t begin, std::size_t end) noexcept {
+    for (std::size_t v = begin; v < end; ++v) {
+      points[v] = on_lattice(lattice.to_lattice(mesh.vertices[v]));
+    }
+  });
   std::vector<PlacedIndex> order(mesh.triangles.size());
   parallel_split(order.size(), [&](std::size_t begin, std::size_t end) noexcept {
     for (std::size_t t = begin; t < end; ++t) {
@@ -106,6 +114,36 @@ Vector3d unpack_normal(std::uint32_t packed) noexcept {
   const double fold = std::max(-z, 0.0);
   const Vector3d n(x - std::copysign(fold, x), y - std::copysign(fold, y), z);
   return n / std::sqrt(n.squaredNorm());
+}
+
+std::optional<PackedSurface> PackedSurface::restore(const Frame& frame, Triangles triangles) {
+  // The same limit as `build`.
+  if (triangles.empty() || triangles.size() >= (std::size_t{1} << 28)) return {};
+  // Written so that NaN is refused.
+  const auto is_length = [](double x) { return x > 0 && std::isfinite(x); };
+  if (!is_length(frame.step) || !is_length(frame.per_step) || !(frame.rise >= 0) ||
+      !std::isfinite(frame.rise) ||
+      !std::all_of(frame.origin.begin(), frame.origin.end(),
+                   [](double x) { return std::isfinite(x); })) {
+    return {};
+  }
+  // The servo follows numbers without a check.
+  const auto count = static_cast<std::uint32_t>(triangles.size());
+  bool valid = true;
+  for (const PackedTriangle& triangle : triangles) {
+    for (const std::int32_t neighbour : triangle.neighbours) {
+      valid &= static_cast<std::uint32_t>(neighbour) < count;  // a negative one is large
+    }
+    valid &= static_cast<std::uint32_t>(triangle.source()) < count;
+  }
+  if (!valid) return {};
+  PackedSurface surface;
+  surface.triangles_ = std::move(triangles);
+  surface.origin_ = {frame.origin[0], frame.origin[1], frame.origin[2]};
+  surface.step_ = frame.step;
+  surface.per_step_ = frame.per_step;
+  surface.rise_ = frame.rise;
+  return surface;
 }
 
 driver::Result<PackedSurface> PackedSurface::build(const ContactMesh& mesh,
@@ -152,52 +190,59 @@ driver::Result<PackedSurface> PackedSurface::build(const TriangleMesh& mesh,
     return driver::Error{"The mesh has no measurable extent."};
   }
 
-  std::vector<std::array<std::int32_t, 3>> triangles(count);
-  surface.triangles_.resize(count);
+  Triangles& triangles = surface.triangles_;
   {
-    std::vector<LatticePoint> points(mesh.vertices.size());
-    parallel_split(points.size(), [&](std::size_t begin, std::size_t end) noexcept {
-      for (std::size_t v = begin; v < end; ++v) {
-        points[v] = on_lattice(surface.to_lattice(mesh.vertices[v]));
-      }
-    });
-    const std::vector<PlacedIndex> order = order_of(mesh, points);
+    const std::vector<PlacedIndex> order = order_of(mesh, surface);
+    triangles.resize(count);
     parallel_split(count, [&](std::size_t begin, std::size_t end) noexcept {
       for (std::size_t t = begin; t < end; ++t) {
-        PackedTriangle& packed = surface.triangles_[t];
-        triangles[t] = mesh.triangles[index(order[t].index)];
-        for (std::size_t k = 0; k < 3; ++k) {
-          const LatticePoint& p = points[index(triangles[t][k])];
-          packed.x[k] = p.x;
-          packed.y[k] = p.y;
-          packed.z[k] = p.z;
-        }
-        packed.flags = static_cast<std::uint32_t>(order[t].index) << PackedTriangle::kSourceShift;
+        unfinished::corners(triangles[t]) = mesh.triangles[index(order[t].index)];
+        triangles[t].flags = static_cast<std::uint32_t>(order[t].index)
+                             << PackedTriangle::kSourceShift;
       }
     });
   }
-
-  const HalfEdges half_edges(triangles, mesh.vertices.size());
-  // A triangle that shares an edge with another of the same winding is found by the triangle behind
-  // that edge, which finds two.
-  std::atomic<bool> all_paired = true;
+  {
+    const HalfEdges half_edges(
+        count, mesh.vertices.size(), [&triangles](std::size_t t) -> const auto& {
+          return unfinished::corners(triangles[t]);
+        });
+    // A triangle that shares an edge with another of the same winding is found by the triangle
+    // behind that edge, which finds two.
+    std::atomic<bool> all_paired = true;
+    parallel_split(count, [&](std::size_t begin, std::size_t end) noexcept {
+      for (std::size_t t = begin; t < end; ++t) {
+        const auto& own = unfinished::corners(triangles[t]);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::int32_t behind = half_edges.opposite(own[(k + 1) % 3], own[k]);
+          triangles[t].neighbours[k] = behind;
+          if (behind < 0) all_paired = false;
+        }
+      }
+    });
+    if (!all_paired) return first_unpaired(triangles, half_edges);
+    const std::ptrdiff_t flat =
+        assign_corner_normals(mesh.vertices, half_edges, options.crease_angle, triangles);
+    if (flat >= 0) {
+      return refusal(index(triangles[static_cast<std::size_t>(flat)].source()), "has no area.");
+    }
+  }
+  std::atomic<double> rise = 0;  // steps
   parallel_split(count, [&](std::size_t begin, std::size_t end) noexcept {
     for (std::size_t t = begin; t < end; ++t) {
+      const std::array<std::int32_t, 3> own = unfinished::corners(triangles[t]);
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::int32_t behind = half_edges.opposite(triangles[t][(k + 1) % 3], triangles[t][k]);
-        surface.triangles_[t].neighbours[k] = behind;
-        if (behind < 0) all_paired = false;
+        const LatticePoint p = on_lattice(surface.to_lattice(mesh.vertices[index(own[k])]));
+        triangles[t].x[k] = p.x;
+        triangles[t].y[k] = p.y;
+        triangles[t].z[k] = p.z;
       }
     }
+    const double highest = rise_above(std::span(triangles).subspan(begin, end - begin));
+    double before = rise;
+    while (before < highest && !rise.compare_exchange_weak(before, highest)) continue;
   });
-  if (!all_paired) return first_unpaired(surface.triangles_, triangles, half_edges);
-  const std::ptrdiff_t flat = assign_corner_normals(mesh.vertices, triangles, half_edges,
-                                                    options.crease_angle, surface.triangles_);
-  if (flat >= 0) {
-    return refusal(index(surface.triangles_[static_cast<std::size_t>(flat)].source()),
-                   "has no area.");
-  }
-  surface.rise_ = surface.step_ * rise_above(surface.triangles_);
+  surface.rise_ = surface.step_ * rise;
   return surface;
 }
 

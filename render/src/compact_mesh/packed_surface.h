@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -83,6 +84,26 @@ class THIMBLE_EXPORT PackedSurface {
   static driver::Result<PackedSurface> build(const TriangleMesh& mesh,
                                              const PackedSurfaceOptions& options = {});
 
+  /// All data of a surface besides its triangles.
+  struct Frame {
+    std::array<double, 3> origin{};  ///< m, W
+    double step = 0;                 ///< m
+    double per_step = 0;             ///< 1/m
+    double rise = 0;                 ///< m
+  };
+  /// All packed triangles of a surface.
+  using Triangles = std::vector<PackedTriangle, LargePages<PackedTriangle>>;
+
+  /// Returns the frame, to store it with the triangles. Real-time: safe.
+  Frame frame() const noexcept {
+    return {{origin_.x(), origin_.y(), origin_.z()}, step_, per_step_, rise_};
+  }
+
+  /// Returns a stored surface. None if it cannot be one: there is no triangle, a number of a
+  /// triangle is out of range, or a number of the frame is not finite. Real-time: never from the
+  /// servo thread.
+  static std::optional<PackedSurface> restore(const Frame& frame, Triangles triangles);
+
   // All of the following are Real-time: safe. Precondition: numbers are valid.
 
   std::int32_t triangle_count() const noexcept {
@@ -126,7 +147,7 @@ class THIMBLE_EXPORT PackedSurface {
  private:
   PackedSurface() = default;
 
-  std::vector<PackedTriangle, LargePages<PackedTriangle>> triangles_;
+  Triangles triangles_;
   Eigen::Vector3d origin_{0, 0, 0};
   double step_ = 0;
   double per_step_ = 0;

@@ -1,10 +1,12 @@
 #include "mesh/adjacency.h"
 
+#include <atomic>
 #include <string>
 #include <utility>
 
 #include "mesh/half_edges.h"
 #include "mesh/mesh_edges.h"
+#include "mesh/parallel_split.h"
 
 namespace thimble::render {
 namespace {
@@ -21,16 +23,22 @@ std::optional<Adjacency> adjacency_if_closed(const TriangleMesh& mesh) {
   }
   const HalfEdges half_edges(mesh.triangles, mesh.vertices.size());
   Adjacency neighbours(mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& corners = mesh.triangles[t];
-    for (std::size_t k = 0; k < 3; ++k) {
-      // If each side has exactly one side in the opposite direction, each edge has two triangles:
-      // a second side in the same direction would be the second opposite of the other.
-      const std::int32_t other = half_edges.opposite(corners[k == 2 ? 0 : k + 1], corners[k]);
-      if (other < 0) return std::nullopt;
-      neighbours[t][k] = other;
+  std::atomic<bool> closed = true;
+  parallel_split(mesh.triangles.size(), [&](std::size_t begin, std::size_t end) noexcept {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& corners = mesh.triangles[t];
+      for (std::size_t k = 0; k < 3; ++k) {
+        // If each side has exactly one side in the opposite direction, each edge has two triangles:
+        // a second side in the same direction would be the second opposite of the other.
+        const std::int32_t other = half_edges.opposite(corners[k == 2 ? 0 : k + 1], corners[k]);
+        neighbours[t][k] = other;
+        if (other >= 0) continue;
+        closed = false;
+        return;
+      }
     }
-  }
+  });
+  if (!closed) return std::nullopt;
   return neighbours;
 }
 

@@ -21,15 +21,24 @@ class HalfEdges {
   };
 
   HalfEdges(const std::vector<std::array<std::int32_t, 3>>& triangles, std::size_t vertices)
-      : begin_(vertices + 2, 0), sides_(3 * triangles.size()) {
-    for (const auto& corners : triangles) {
-      for (const std::int32_t v : corners) ++begin_[static_cast<std::size_t>(v) + 2];
+      : HalfEdges(
+            triangles.size(),
+            vertices, [&triangles](std::size_t t) -> const auto& { return triangles[t]; }) {}
+
+  /// Takes triangles that are not in an array of their own. `corners_of(t)` returns the three
+  /// vertices of triangle `t`.
+  template <class CornersOf>
+  HalfEdges(std::size_t triangles, std::size_t vertices, const CornersOf& corners_of)
+      : begin_(vertices + 2, 0), sides_(3 * triangles) {
+    for (std::size_t t = 0; t < triangles; ++t) {
+      for (const std::int32_t v : corners_of(t)) ++begin_[static_cast<std::size_t>(v) + 2];
     }
     for (std::size_t v = 2; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t t = 0; t < triangles; ++t) {
+      const std::array<std::int32_t, 3>& corners = corners_of(t);
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto v = static_cast<std::size_t>(triangles[t][k]);
-        sides_[begin_[v + 1]++] = {triangles[t][(k + 1) % 3], static_cast<std::int32_t>(t)};
+        const auto v = static_cast<std::size_t>(corners[k]);
+        sides_[begin_[v + 1]++] = {corners[k == 2 ? 0 : k + 1], static_cast<std::int32_t>(t)};
       }
     }
     for (std::size_t v = 0; v < vertices; ++v) {

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "compact_mesh/block_order.h"
 #include "mesh/parallel_split.h"
 #include "search/tree_search.h"
@@ -45,6 +47,14 @@ TreeSearch<Surface>::TreeSearch(const Surface& surface, bool wide)
 }
 
 template <class Surface>
+TreeSearch<Surface>::TreeSearch(const Surface& surface, TreeNodes nodes, bool wide)
+    : surface_(&surface),
+      frame_(frame_of(surface)),
+      wide_(wide),
+      order_(order_of(surface, frame_)),
+      nodes_(std::move(nodes)) {}
+
+template <class Surface>
 LatticeAabb TreeSearch<Surface>::box_of(std::size_t place) const noexcept {
   LatticeAabb box;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -58,6 +68,7 @@ LatticeAabb TreeSearch<Surface>::box_of(std::size_t place) const noexcept {
 template TreeSearch<ContactMesh>::TreeSearch(const ContactMesh&, bool);
 template LatticeAabb TreeSearch<ContactMesh>::box_of(std::size_t) const noexcept;
 template TreeSearch<PackedSurface>::TreeSearch(const PackedSurface&, bool);
+template TreeSearch<PackedSurface>::TreeSearch(const PackedSurface&, TreeNodes, bool);
 template LatticeAabb TreeSearch<PackedSurface>::box_of(std::size_t) const noexcept;
 
 }  // namespace thimble::render

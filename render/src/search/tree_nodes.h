@@ -5,6 +5,8 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "compact_mesh/large_pages.h"
@@ -32,6 +34,17 @@ class TreeNodes {
   /// thread.
   template <class BoxOf>
   void build(std::size_t things, BoxOf box_of, std::size_t room = 0);
+
+  /// All nodes of a tree, in the order of memory.
+  using Nodes = std::vector<BoxNode, LargePages<BoxNode>>;
+
+  /// Takes the nodes of a tree that was built without room for more things (`all`). Returns false
+  /// and does nothing if they are not as many as a tree over `things` has. Real-time: never from
+  /// the servo thread.
+  bool restore(std::size_t things, Nodes nodes);
+
+  /// Returns all nodes, to store them. Real-time: safe.
+  std::span<const BoxNode> all() const noexcept { return nodes_; }
 
   /// Sets the number of things to `things`, the new ones at the end, within the room of `build`.
   /// The caller must then `refit` each of them. Real-time: safe.
@@ -79,8 +92,11 @@ class TreeNodes {
   template <class BoxOf>
   BoxNode made(std::size_t level, std::size_t number, BoxOf box_of) const noexcept;
 
-  std::vector<BoxNode, LargePages<BoxNode>> nodes_;  // the highest level first
-  std::array<std::uint32_t, kLevelsMax> begins_{};   // begin of each level in nodes_
+  // Sets the levels of a tree with room for `room` things. Returns the number of its nodes.
+  std::size_t set_levels(std::size_t things, std::size_t room) noexcept;
+
+  Nodes nodes_;                                     // the highest level first
+  std::array<std::uint32_t, kLevelsMax> begins_{};  // begin of each level in nodes_
   std::array<std::uint32_t, kLevelsMax + 1>
       counts_{};  // number of elements of each level, things first
   std::size_t levels_ = 1;
@@ -99,8 +115,7 @@ BoxNode TreeNodes::made(std::size_t level, std::size_t number, BoxOf box_of) con
   return node;
 }
 
-template <class BoxOf>
-void TreeNodes::build(std::size_t things, BoxOf box_of, std::size_t room) {
+inline std::size_t TreeNodes::set_levels(std::size_t things, std::size_t room) noexcept {
   counts_[0] = static_cast<std::uint32_t>(things);
   std::array<std::uint32_t, kLevelsMax + 1> most{};
   most[0] = static_cast<std::uint32_t>(std::max(things, room));
@@ -111,16 +126,31 @@ void TreeNodes::build(std::size_t things, BoxOf box_of, std::size_t room) {
     most[levels_ + 1] = (most[levels_] + 7) / 8;
     all += most[++levels_];
   } while (most[levels_] > 1);
-  nodes_.resize(all);
+  std::size_t begin = all;
   for (std::size_t level = 0; level < levels_; ++level) {
-    all -= most[level + 1];
-    begins_[level] = static_cast<std::uint32_t>(all);
-    parallel_split(counts_[level + 1],
-                   [this, all, level, &box_of](std::size_t begin, std::size_t end) {
-                     for (std::size_t i = begin; i < end; ++i)
-                       nodes_[all + i] = made(level, i, box_of);
-                   });
+    begin -= most[level + 1];
+    begins_[level] = static_cast<std::uint32_t>(begin);
   }
+  return all;
+}
+
+template <class BoxOf>
+void TreeNodes::build(std::size_t things, BoxOf box_of, std::size_t room) {
+  nodes_.resize(set_levels(things, room));
+  for (std::size_t level = 0; level < levels_; ++level) {
+    parallel_split(counts_[level + 1], [this, level, &box_of](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) nodes_[begins_[level] + i] = made(level, i, box_of);
+    });
+  }
+}
+
+inline bool TreeNodes::restore(std::size_t things, Nodes nodes) {
+  if (things == 0 || things > kThingsMax) return false;
+  TreeNodes restored;
+  if (restored.set_levels(things, things) != nodes.size()) return false;
+  restored.nodes_ = std::move(nodes);
+  *this = std::move(restored);
+  return true;
 }
 
 template <class BoxOf>

@@ -35,6 +35,10 @@ class TreeSearch final : public ContactSearch {
   /// can. Real-time: never from the servo thread.
   explicit TreeSearch(const Surface& surface, bool wide = wide_lanes());
 
+  /// Takes the nodes of a tree that was built over the same surface. Real-time: never from the
+  /// servo thread.
+  TreeSearch(const Surface& surface, TreeNodes nodes, bool wide = wide_lanes());
+
   Entry first_entry(const Eigen::Vector3d& p_from,
                     const Eigen::Vector3d& p_to) const noexcept override;
   bool inside(const Eigen::Vector3d& p_W) const noexcept override;
@@ -52,6 +56,7 @@ class TreeSearch final : public ContactSearch {
   void keep_places();
 
   const Surface& surface() const noexcept { return *surface_; }
+  const TreeNodes& nodes() const noexcept { return nodes_; }
 
  private:
   LatticeAabb box_of(std::size_t place) const noexcept;

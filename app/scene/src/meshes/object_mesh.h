@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,10 @@ struct ObjectMesh {
   /// Texture coordinates and vertex colours, if the object uses them.
   std::shared_ptr<const render::SurfaceMaps> maps;
   bool is_valid = false;  ///< Whether the mesh is certainly_valid.
+  /// Tracker that suits the mesh alone (render::choose_tracker), if it was chosen while the mesh
+  /// was checked.
+  std::optional<render::ChosenTracker> suitable;
+  std::string cache_key;  ///< Key in the mesh cache (MeshCache); empty: not stored.
 };
 
 /// Fails if a mesh of a program has no triangle, names a vertex that it does not have, or has a

@@ -34,6 +34,11 @@ render::SurfaceChoice surface_of(const SceneObject& object) {
           .friction_map = object.friction_map};
 }
 
+bool takes_suitable_tracker(const SceneObject& object) {
+  return object.contact.tip_radius == 0 && !object.sheet_thickness && is_chosen(object) &&
+         !object.repair && !render::required_tracker(object.contact, surface_of(object));
+}
+
 ObjectTracker tracker_of(const SceneObject& object, const std::shared_ptr<const ObjectMesh>& mesh,
                          SharedMeshes& meshes) {
   ObjectTracker found;

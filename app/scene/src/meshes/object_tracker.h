@@ -16,6 +16,10 @@ namespace thimble::scene {
 /// Returns the surface settings of an object. Real-time: never from the servo thread.
 render::SurfaceChoice surface_of(const SceneObject& object);
 
+/// Returns whether the tracker of an object is the one that suits its mesh (SharedMeshes::tracker).
+/// Precondition: the object is a mesh in memory. Real-time: never from the servo thread.
+bool takes_suitable_tracker(const SceneObject& object);
+
 /// Returns the contact settings of an object with the tracker that touches it, and the reason.
 /// `meshes` keeps the choice for `mesh`. Precondition: the object is a mesh in memory. Real-time:
 /// never from the servo thread.

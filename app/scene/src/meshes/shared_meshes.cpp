@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "meshes/cache/mesh_cache.h"
 #include "meshes/mesh_join.h"
 #include "meshes/object_mesh.h"
 #include "still_surface.h"
@@ -65,7 +66,7 @@ struct MeshKey {
 
 /// Values by key, few enough for a linear search.
 template <class Key, class Value>
-class MeshCache {
+class HeldMeshes {
  public:
   std::shared_ptr<const Value> find(const Key& key) const {
     const auto found = std::find_if(entries_.begin(), entries_.end(),
@@ -77,10 +78,12 @@ class MeshCache {
         .second;
   }
   std::size_t size() const { return entries_.size(); }
+  /// Returns the first entry, key and value, whose value passes a test; null if none does.
   template <class Test>
-  bool any(const Test& test) const {
-    return std::any_of(entries_.begin(), entries_.end(),
-                       [&test](const auto& entry) { return test(*entry.second); });
+  const std::pair<Key, std::shared_ptr<const Value>>* find_if(const Test& test) const {
+    const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                    [&test](const auto& entry) { return test(*entry.second); });
+    return found == entries_.end() ? nullptr : &*found;
   }
   bool holds(const Value* value) const {
     return std::any_of(entries_.begin(), entries_.end(),
@@ -121,16 +124,26 @@ bool same(const render::TriangleMesh& a, const render::TriangleMesh& b) {
 }  // namespace
 
 struct SharedMeshes::Held {
+  /// Returns the tracker that suits a mesh of `files`.
+  std::shared_ptr<const render::ChosenTracker> tracker_of(const ObjectMesh* mesh) {
+    if (auto found = trackers.find(mesh)) return found;
+    return trackers.keep(mesh, render::choose_tracker(mesh->mesh_W));
+  }
+
   std::mutex mutex;
-  MeshCache<MeshKey, ObjectMesh> files;
-  MeshCache<const ObjectMesh*, render::ChosenTracker> trackers;  // of `files`
-  std::unordered_multimap<std::uint64_t, MeshPointer> shapes;    // by `hash_of`
-  MeshCache<std::vector<MeshPointer>, render::TriangleMesh> joined;
-  MeshCache<std::pair<MeshPointer, render::ContactChoice>, render::StillSurface> surfaces;
-  MeshCache<std::pair<std::vector<HandWaypoint>, NamedPointers>, HandRoute> routes;
+  std::optional<MeshCache> disk;  // none: nothing is stored on disk
+  HeldMeshes<MeshKey, ObjectMesh> files;
+  HeldMeshes<const ObjectMesh*, render::ChosenTracker> trackers;  // of `files`
+  std::unordered_multimap<std::uint64_t, MeshPointer> shapes;     // by `hash_of`
+  HeldMeshes<std::vector<MeshPointer>, render::TriangleMesh> joined;
+  HeldMeshes<std::pair<MeshPointer, render::ContactChoice>, render::StillSurface> surfaces;
+  HeldMeshes<std::pair<std::vector<HandWaypoint>, NamedPointers>, HandRoute> routes;
 };
 
 SharedMeshes::SharedMeshes() : held_(std::make_unique<Held>()) {}
+SharedMeshes::SharedMeshes(MeshCacheChoice cache) : SharedMeshes() {
+  held_->disk.emplace(std::move(cache));
+}
 SharedMeshes::~SharedMeshes() = default;
 
 std::size_t SharedMeshes::meshes() const {
@@ -159,16 +172,34 @@ driver::Result<std::shared_ptr<const ObjectMesh>> SharedMeshes::object_mesh(
   const std::scoped_lock lock(held_->mutex);
   MeshKey key(object);
   if (auto found = held_->files.find(key)) return found;
+  const std::string cache_key = held_->disk ? MeshCache::key_of(object) : std::string();
+  if (!cache_key.empty()) {
+    if (auto stored = held_->disk->find_mesh(object, cache_key)) {
+      auto kept = held_->files.keep(std::move(key), std::move(stored->mesh));
+      held_->trackers.keep(kept.get(), std::move(stored->tracker));
+      return kept;
+    }
+  }
   auto loaded = load_object_mesh(object);
   if (!loaded) return loaded.error();
-  return held_->files.keep(std::move(key), std::move(loaded).value());
+  // The file may have been written again since the key was made from it.
+  if (!cache_key.empty() && held_->disk->stores(*loaded) &&
+      MeshCache::key_of(object) == cache_key) {
+    loaded->cache_key = cache_key;
+  }
+  std::optional<render::ChosenTracker> suitable = std::move(loaded->suitable);
+  auto kept = held_->files.keep(std::move(key), std::move(loaded).value());
+  if (suitable) held_->trackers.keep(kept.get(), *std::move(suitable));
+  if (!kept->cache_key.empty()) {
+    held_->disk->keep_mesh(object, *kept, *held_->tracker_of(kept.get()));
+  }
+  return kept;
 }
 
 std::shared_ptr<const render::ChosenTracker> SharedMeshes::tracker(
     const std::shared_ptr<const ObjectMesh>& mesh) {
   const std::scoped_lock lock(held_->mutex);
-  if (auto found = held_->trackers.find(mesh.get())) return found;
-  return held_->trackers.keep(mesh.get(), render::choose_tracker(mesh->mesh_W));
+  return held_->tracker_of(mesh.get());
 }
 
 MeshPointer SharedMeshes::mesh_like(const render::TriangleMesh& mesh_W) {
@@ -194,10 +225,20 @@ driver::Result<std::shared_ptr<const render::StillSurface>> SharedMeshes::surfac
     const MeshPointer& mesh_W, const render::ContactChoice& contact) {
   const std::scoped_lock lock(held_->mutex);
   if (auto found = held_->surfaces.find({mesh_W, contact})) return found;
-  const bool is_valid = held_->files.any(
-      [&mesh_W](const ObjectMesh& mesh) { return &mesh.mesh_W == mesh_W.get() && mesh.is_valid; });
-  auto made = render::prepare_still_surface(*mesh_W, contact, is_valid);
+  const auto* of_file = held_->files.find_if(
+      [&mesh_W](const ObjectMesh& mesh) { return &mesh.mesh_W == mesh_W.get(); });
+  const bool is_stored = of_file != nullptr && !of_file->second->cache_key.empty();
+  if (is_stored) {
+    if (auto stored = held_->disk->find_surface(*of_file->second, contact)) {
+      return held_->surfaces.keep({mesh_W, contact}, *std::move(stored));
+    }
+  }
+  auto made = render::prepare_still_surface(*mesh_W, contact,
+                                            of_file != nullptr && of_file->second->is_valid);
   if (!made) return made.error();
+  if (is_stored) {
+    held_->disk->keep_surface(of_file->first.file, *of_file->second, contact, *made);
+  }
   return held_->surfaces.keep({mesh_W, contact}, std::move(made).value());
 }
 

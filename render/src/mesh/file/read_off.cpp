@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "mesh/file/read_plain_off.h"
 #include "mesh/file/text_words.h"
 #include "mesh/file/triangulate_polygon.h"
 
@@ -131,6 +132,17 @@ driver::Result<TriangleMesh> read_off(std::string_view text, const std::string& 
   if (!header) return header.error();
   if (header->vertices > std::numeric_limits<std::int32_t>::max()) {
     return words.error("more than 2^31 - 1 vertices are not supported.");
+  }
+  if (!header->vertex_per_line) {
+    // From the line end of the counts.
+    const std::string_view rest = text.substr(text.size() - words.left());
+    const std::size_t line_end = rest.find('\n');
+    if (line_end != std::string_view::npos) {
+      auto plain =
+          read_plain_off(rest.substr(line_end + 1), static_cast<std::size_t>(header->vertices),
+                         static_cast<std::size_t>(header->faces));
+      if (plain) return *std::move(plain);
+    }
   }
   TriangleMesh mesh;
   if (auto error = read_vertices(words, *header, mesh)) return *error;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,6 +23,17 @@ namespace thimble::scene {
 struct ObjectMesh;
 struct SceneObject;
 
+/// Folder on disk in which meshes are stored as they are when they are ready to be touched, so that
+/// later runs start sooner. Runs are bit-identical with and without it. Damaged, foreign and old
+/// files in it are never used, and a folder that cannot be written stops no run.
+struct MeshCacheChoice {
+  std::filesystem::path folder;           ///< Created if it does not exist, for its owner only.
+  std::size_t triangles_min = 1'000'000;  ///< Meshes with fewer triangles are not stored.
+  /// Largest size of all stored meshes, bytes; those that were used first are removed. [chosen: 20
+  /// meshes of 10^6 triangles, at 98 MB]
+  std::uint64_t bytes_max = std::uint64_t{2} << 30;
+};
+
 /// Store of data that similar scenes share and no run changes: meshes in the world, their
 /// acceleration structures, and the paths of hands over them. Each entry is made on first request,
 /// once per combination of file, place, size and contact settings. A file whose size or
@@ -33,6 +46,8 @@ struct SceneObject;
 class THIMBLE_EXPORT SharedMeshes {
  public:
   SharedMeshes();
+  /// Also stores large meshes on disk, and reads those that an earlier run has stored.
+  explicit SharedMeshes(MeshCacheChoice cache);
   ~SharedMeshes();
   SharedMeshes(const SharedMeshes&) = delete;
   SharedMeshes& operator=(const SharedMeshes&) = delete;

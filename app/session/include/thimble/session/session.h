@@ -123,6 +123,9 @@ struct SessionOptions {
   std::function<void(scene::Scene&)> adjust = {};
   /// Meshes shared with other sessions (scene/shared_meshes.h); if null, not shared.
   std::shared_ptr<scene::SharedMeshes> meshes = {};
+  /// Folder of the mesh cache (scene::MeshCacheChoice), if `meshes` is null. Empty: the one that
+  /// the environment names (THIMBLE_MESH_CACHE), or none.
+  std::filesystem::path mesh_cache = {};
   Keep keep = Keep::kRun;  ///< Data kept of the ticks.
   bool log = false;        ///< Logs the events of the run.
   /// True if the real arm was in its home pose at power-on. Then it need not be moved there.
