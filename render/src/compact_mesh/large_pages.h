@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <new>
+#include <utility>
 
 namespace thimble::render {
 
@@ -31,6 +32,17 @@ struct LargePages {
   void deallocate(T* memory, std::size_t count) noexcept {
     const std::size_t align = count * sizeof(T) < kPage ? alignof(T) : kPage;
     ::operator delete(memory, std::align_val_t(align));
+  }
+  /// Makes an element without setting it to zero, unless its type does so itself: whoever resizes
+  /// an array of 64 MB writes all of it.
+  template <class U>
+  void construct(U* element) noexcept(noexcept(U())) {
+    ::new (static_cast<void*>(element)) U;
+  }
+  /// Makes an element from others.
+  template <class U, class... From>
+  requires(sizeof...(From) > 0) void construct(U* element, From&&... from) {
+    ::new (static_cast<void*>(element)) U(std::forward<From>(from)...);
   }
   friend bool operator==(const LargePages&, const LargePages&) noexcept { return true; }
 

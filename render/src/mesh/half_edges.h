@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -29,7 +30,7 @@ class HalfEdges {
   /// vertices of triangle `t`.
   template <class CornersOf>
   HalfEdges(std::size_t triangles, std::size_t vertices, const CornersOf& corners_of)
-      : begin_(vertices + 2, 0), sides_(3 * triangles) {
+      : begin_(vertices + 2, 0), sides_(std::make_unique_for_overwrite<Side[]>(3 * triangles)) {
     for (std::size_t t = 0; t < triangles; ++t) {
       for (const std::int32_t v : corners_of(t)) ++begin_[static_cast<std::size_t>(v) + 2];
     }
@@ -53,7 +54,7 @@ class HalfEdges {
   /// Lists the sides that begin at a vertex; one per triangle around it.
   std::span<const Side> around(std::int32_t vertex) const noexcept {
     const auto v = static_cast<std::size_t>(vertex);
-    return {sides_.data() + begin_[v], begin_[v + 1] - begin_[v]};
+    return {sides_.get() + begin_[v], begin_[v + 1] - begin_[v]};
   }
 
   /// Returns the only triangle with the edge from `from` to `to`; -1 if there is none or several.
@@ -82,7 +83,7 @@ class HalfEdges {
   }
 
   std::vector<std::uint32_t> begin_;
-  std::vector<Side> sides_;
+  std::unique_ptr<Side[]> sides_;
   std::unordered_map<std::int32_t, std::vector<Side>>
       hubs_;  // of vertices with many sides, sorted by their ends
 };

@@ -79,8 +79,9 @@ TEST(ReadPlainOff, LeavesAllOtherFormsToReadingByWords) {
   EXPECT_TRUE(read_plain_off(vertices + "3 0 1 2\nmore", 3, 1)) << "as word by word";
   for (const char* const other :
        {"3 0 1 3\n", "3 0 1 -1\n", "3 0 1 +2\n", "3 0 1\n2\n", "3 0 1 2 7\n", "4 0 1 2 0\n",
-        "3\t0 1 2\n", "\n3 0 1 2\n", "3 0 1 2#\n", "3 0 1 2\r", "3 0 1 2.0\n", "3 0 1 4294967297\n",
-        "3 0 1 18446744073709551618\n", "3 0 1 x\n", "", "03 0 1 0000000002\n", "2 0 1\n"}) {
+        "3\t0 1 2\n", "\n3 0 1 2\n", "3 0 1 2#\n", "3 0 1 2\r\r\n", "3 0 1 2.0\n",
+        "3 0 1 4294967297\n", "3 0 1 18446744073709551618\n", "3 0 1 x\n", "",
+        "03 0 1 0000000002\n", "2 0 1\n"}) {
     EXPECT_FALSE(read_plain_off(vertices + other, 3, 1)) << other;
   }
   for (const char* const other :
