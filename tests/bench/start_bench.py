@@ -35,21 +35,22 @@ GOALS = {"none": (0.6, 150), "written": (None, 150), "read": (0.6, 150), "elepha
 
 
 def write_ring(file):
-    """Writes a ring with a tube of 12 mm around a circle of 30 mm."""
-    lines = ["OFF", f"{AROUND * ACROSS} {2 * AROUND * ACROSS} 0"]
-    for i in range(AROUND):
-        u = 2 * math.pi * i / AROUND
-        for j in range(ACROSS):
-            v = 2 * math.pi * j / ACROSS
-            tube = 0.012 + 0.0005 * math.sin(7 * u) * math.sin(5 * v)
-            ring = 0.03 + tube * math.cos(v)
-            lines.append(f"{ring * math.cos(u):.7f} {ring * math.sin(u):.7f} {tube * math.sin(v):.7f}")
-    for i in range(AROUND):
-        for j in range(ACROSS):
-            a, b = i * ACROSS + j, (i + 1) % AROUND * ACROSS + j
-            c, d = (i + 1) % AROUND * ACROSS + (j + 1) % ACROSS, i * ACROSS + (j + 1) % ACROSS
-            lines += [f"3 {a} {b} {c}", f"3 {a} {c} {d}"]
-    file.write_text("\n".join(lines) + "\n", encoding="ascii")
+    """Writes a ring with a tube of 12 mm around a circle of 30 mm, a row at a time: the memory of this process would count
+    as that of the programs that it starts (getrusage(2))."""
+    with file.open("w", encoding="ascii") as out:
+        out.write(f"OFF\n{AROUND * ACROSS} {2 * AROUND * ACROSS} 0\n")
+        for i in range(AROUND):
+            u = 2 * math.pi * i / AROUND
+            for j in range(ACROSS):
+                v = 2 * math.pi * j / ACROSS
+                tube = 0.012 + 0.0005 * math.sin(7 * u) * math.sin(5 * v)
+                ring = 0.03 + tube * math.cos(v)
+                out.write(f"{ring * math.cos(u):.7f} {ring * math.sin(u):.7f} {tube * math.sin(v):.7f}\n")
+        for i in range(AROUND):
+            for j in range(ACROSS):
+                a, b = i * ACROSS + j, (i + 1) % AROUND * ACROSS + j
+                c, d = (i + 1) % AROUND * ACROSS + (j + 1) % ACROSS, i * ACROSS + (j + 1) % ACROSS
+                out.write(f"3 {a} {b} {c}\n3 {a} {c} {d}\n")
 
 
 def spend(command, cache):

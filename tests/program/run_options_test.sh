@@ -54,6 +54,7 @@ table='
 --ros-limit     | arm      |                           | of those forces
 --ros-stale     | arm      |                           | of those forces
 --ros-frames    | same     |                           | names in messages
+--mesh-cache    | same     | --mesh-cache              | only the preparation (mesh_cache_test.sh has a large mesh)
 --seed          | recorded | --seed 77                 | seed
 --help          | same     |                           | no run
 --version       | same     |                           | no run

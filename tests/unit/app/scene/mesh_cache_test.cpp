@@ -246,6 +246,14 @@ TEST_F(MeshCacheTest, KeyDependsOnContentsAndEachSetting) {
         o.mesh_file = object_of(support::icosphere(1, 0.03), "b.off").mesh_file;
       },
       [](SceneObject& o) {
+        std::string text = text_in(o.mesh_file);
+        char& digit = text[text.size() / 3];
+        digit = digit == '1' ? '2' : '1';
+        o.mesh_file.replace_extension();
+        o.mesh_file += "_changed.off";
+        write_text(o.mesh_file, text);
+      },
+      [](SceneObject& o) {
         const fs::path stl = fs::path(o.mesh_file).replace_extension(".stl");
         fs::copy_file(o.mesh_file, stl, fs::copy_options::overwrite_existing);
         o.mesh_file = stl;

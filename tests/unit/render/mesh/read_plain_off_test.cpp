@@ -80,14 +80,14 @@ TEST(ReadPlainOff, LeavesAllOtherFormsToReadingByWords) {
   for (const char* const other :
        {"3 0 1 3\n", "3 0 1 -1\n", "3 0 1 +2\n", "3 0 1\n2\n", "3 0 1 2 7\n", "4 0 1 2 0\n",
         "3\t0 1 2\n", "\n3 0 1 2\n", "3 0 1 2#\n", "3 0 1 2\r\r\n", "3 0 1 2.0\n",
-        "3 0 1 4294967297\n", "3 0 1 18446744073709551618\n", "3 0 1 x\n", "",
-        "03 0 1 0000000002\n", "2 0 1\n"}) {
+        "3 0 1 4294967297\n", "3 0 1 18446744073709551618\n", "3 0 1 x\n", "3 0 1 :       \n",
+        "3 0 1 /       \n", "", "03 0 1 0000000002\n", "2 0 1\n"}) {
     EXPECT_FALSE(read_plain_off(vertices + other, 3, 1)) << other;
   }
   for (const char* const other :
        {"0 0 1mm\n", "0 0\n0\n", "0 0 0 0\n", "0 0 nan\n", "0 0 inf\n", "0 0 1e16\n",
         "0 0 -1000000000000001\n", "0,0 0 0\n", "0 0 .\n", "0 0 -\n", "0 0 1.2.3\n", "0\t0 0\n",
-        "0 0 0 #\n", "\n0 0 0\n", "0 0 0\r", "0 0 0x1\n"}) {
+        "0 0 0 #\n", "\n0 0 0\n", "0 0 0\r", "0 0 0x1\n", "0 0 :       \n"}) {
     EXPECT_FALSE(read_plain_off(other + vertices + "3 0 1 2\n", 4, 1)) << other;
   }
   EXPECT_FALSE(read_plain_off(vertices + "3 0 1 2\n", 3, 0));
