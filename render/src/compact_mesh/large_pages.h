@@ -33,8 +33,8 @@ struct LargePages {
     const std::size_t align = count * sizeof(T) < kPage ? alignof(T) : kPage;
     ::operator delete(memory, std::align_val_t(align));
   }
-  /// Makes an element without setting it to zero, unless its type does so itself: whoever resizes
-  /// an array of 64 MB writes all of it.
+  /// Makes an element without setting it to zero, unless its type does so itself. After a resize to
+  /// 64 MB, all of it is written anyway.
   template <class U>
   void construct(U* element) noexcept(noexcept(U())) {
     ::new (static_cast<void*>(element)) U;
