@@ -409,7 +409,9 @@ void add_view_command(CLI::App& app, int& exit_code, const ShowWindow& show_wind
       ->excludes(save_as)
       ->group(kSave);
   add_example(*command, "thimble view elephant --pause",
-              "RUN  If the scene has several arms, name the recordings of all arms.\n"
+              "RUN  If the scene has several arms, name the recordings of all arms. The\n"
+              "     recordings of several runs are shown on one time line, each from its\n"
+              "     first tick on.\n"
               "     Without RUN, and without an active run, the start window opens. The window\n"
               "     waits for a RUN that is not active.\n"
               "--start  RUN is then a scene, mesh or recording to open, or may be absent. A\n"

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "thimble/render/body_patch.h"
 #include "thimble/render/body_pose.h"
 #include "thimble/render/mesh/triangle_mesh.h"
+#include "view/gl/palette.h"
 
 namespace thimble::view {
 
@@ -68,11 +70,18 @@ struct DrawnScene {
 /// One part of the arm: a rod between two points of the world, m.
 using DrawnRod = std::pair<Eigen::Vector3d, Eigen::Vector3d>;
 
-/// An arm after the first, at one moment, in a scene with several.
+/// How an arm differs from others in the picture.
+struct ArmLook {
+  std::optional<Colour> colour;  ///< Of arm, tip and force; none: the usual colours.
+  bool ended = false;            ///< Its recording has ended: no force is drawn.
+};
+
+/// An arm after the first, at one moment, in a scene with several, or of another recording.
 struct DrawnArm {
   std::string name;  ///< Its name in the scene.
   driver::TickRecord tick;
   std::vector<DrawnRod> rods;  ///< From the base to the tip; empty: not drawn.
+  ArmLook look{};
 };
 
 /// The state of a scene at one moment.
@@ -81,6 +90,7 @@ struct DrawnMoment {
   std::vector<render::BodyPose> poses;  ///< One per object of the scene.
   render::BodyPatch patch;              ///< No triangles if nothing is dented.
   std::vector<DrawnRod> arm;            ///< From the base to the tip; empty: not drawn.
+  ArmLook look{};                       ///< Of the first arm.
   std::vector<DrawnArm> others;         ///< The arms after the first, if there are any.
   /// One per object: its permanently deformed mesh, including split triangles; null if it has none.
   /// A new shape is a new object.

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "thimble/driver/heat_guard.h"
+#include "view/compare/run_list.h"
 #include "view/knob_panel.h"
 #include "view/number_text.h"
 #include "view/panel_flow.h"
@@ -135,7 +136,12 @@ void draw_recorded_head(TouchSource& source) {
   ImGui::TextUnformatted(source.scene().name.c_str());
   for (const std::string& sentence : source.about()) ImGui::TextDisabled("%s", sentence.c_str());
   ImGui::PopTextWrapPos();
-  draw_tick(source.moment().tick, "recorded");
+  Comparison* const runs = source.comparison();
+  if (runs != nullptr && runs->several()) {
+    draw_run_list(*runs);
+  } else {
+    draw_tick(source.moment().tick, "recorded");
+  }
 }
 
 constexpr const char* kBackHelp = "Shows the list of scenes. A run that this window started ends";
@@ -169,7 +175,8 @@ void draw_plots(TouchSource& source, PlotPanel& panel, float height) {
   const PlotTime time{.looked = head.live() ? std::nullopt : std::optional(head.time()),
                       .recorded = !head.of_a_run(),
                       .period_ns = std::llround(1e9 / source.scene().rate),
-                      .duration = source.scene().duration};
+                      .duration = source.scene().duration,
+                      .compared = source.comparison()};
   if (const auto asked = panel.draw(source.plots(), time, height)) source.head().go(*asked);
 }
 

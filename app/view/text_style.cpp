@@ -101,6 +101,7 @@ Theme shown_theme() {
 void write_labels(const std::vector<Label>& labels, const Camera& camera, Theme theme,
                   const ScreenPart& part) {
   const float margin = 0.5F * ImGui::GetFontSize();
+  std::vector<ImVec4> written;  // left, top, right, bottom
   for (const Label& label : labels) {
     if ((label.p_W - camera.p_WEye()).dot(camera.towards_eye()) >= 0) continue;
     const Eigen::Vector2f at = camera.pixel(label.p_W, part.width, part.height).cast<float>();
@@ -110,8 +111,18 @@ void write_labels(const std::vector<Label>& labels, const Camera& camera, Theme 
     const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
     const float x = std::clamp(at.x() + away.x() * (0.5F * size.x + 2.5F * margin) - 0.5F * size.x,
                                margin, part.width - size.x - margin);
-    const float y = std::clamp(at.y() + away.y() * (0.5F * size.y + margin) - 0.5F * size.y, margin,
-                               part.height - size.y - margin);
+    float y = std::clamp(at.y() + away.y() * (0.5F * size.y + margin) - 0.5F * size.y, margin,
+                         part.height - size.y - margin);
+    // Below the labels that it would cover: two arms may be at the same place.
+    for (std::size_t i = 0; i < written.size(); ++i) {
+      const auto covers = [&](const ImVec4& other) {
+        return x < other.z && x + size.x > other.x && y < other.w && y + size.y > other.y;
+      };
+      const auto found = std::find_if(written.begin(), written.end(), covers);
+      if (found == written.end()) break;
+      y = found->w;
+    }
+    written.emplace_back(x, y, x + size.x, y + size.y);
     write_rimmed({std::round(part.x + x), std::round(part.y + y)}, theme,
                  text_colour(label.colour, theme), label.text);
   }

@@ -24,7 +24,8 @@ struct ScreenPart {
 };
 
 /// Draws labels next to their places, with a pale outline that makes them readable on any
-/// background. Labels stay within the part of the screen. Call between ImGui's NewFrame and Render.
+/// background. Labels stay within the part of the screen, and do not cover each other. Call between
+/// ImGui's NewFrame and Render.
 void write_labels(const std::vector<Label>& labels, const Camera& camera, Theme theme,
                   const ScreenPart& part);
 

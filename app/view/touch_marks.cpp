@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "view/compare/run_colours.h"
+
 namespace thimble::view {
 namespace {
 
@@ -27,6 +29,18 @@ struct OneArm {
   double tip_radius = 0;  ///< Of a tip that is a ball, m; 0: a point.
   /// Draws the force through objects: several arms hold objects from all sides.
   bool force_shines = false;
+  ArmLook look{};
+
+  Colour arm_colour() const {
+    return look.colour ? blended(kArmColour, *look.colour, kArmTint) : kArmColour;
+  }
+  Colour joint_colour() const {
+    return look.colour ? blended(kJointColour, *look.colour, kArmTint) : kJointColour;
+  }
+  Colour proxy_colour() const { return look.ended ? ended_colour(kProxyColour) : kProxyColour; }
+  Colour tip_colour() const { return look.colour.value_or(kTipColour); }
+  Colour force_colour() const { return look.colour.value_or(kForceColour); }
+  static constexpr float kArmTint = 0.55F;  ///< Share of its colour in an arm. [chosen]
 };
 
 void add_arm(const OneArm& moment, TouchMarks& marks) {
@@ -43,13 +57,14 @@ void add_arm(const OneArm& moment, TouchMarks& marks) {
       const Point along = (to - from) / length;
       const Point neck = to - kStemLength * along;
       const Point shoulder = neck - 0.6 * kStemLength * along;
-      marks.solids.push_back(rod(from, shoulder, kTube, kArmColour));
-      marks.solids.push_back(cone(shoulder, neck + 0.32 * kStemLength * along, kTube, kArmColour));
-      marks.solids.push_back(rod(shoulder, to, kStem, kArmColour));
+      marks.solids.push_back(rod(from, shoulder, kTube, moment.arm_colour()));
+      marks.solids.push_back(
+          cone(shoulder, neck + 0.32 * kStemLength * along, kTube, moment.arm_colour()));
+      marks.solids.push_back(rod(shoulder, to, kStem, moment.arm_colour()));
     } else {
-      marks.solids.push_back(rod(from, to, kTube, kArmColour));
+      marks.solids.push_back(rod(from, to, kTube, moment.arm_colour()));
     }
-    marks.solids.push_back(ball(from, kJoint, kJointColour));
+    marks.solids.push_back(ball(from, kJoint, moment.joint_colour()));
   }
 }
 
@@ -62,10 +77,10 @@ void add_stylus(const OneArm& moment, TouchMarks& marks) {
   const Eigen::Matrix3d R_WT = driver::rotation_of(moment.tick.q_WT);
   const Point along = R_WT.col(0);
   const Point grip = tip + kPoint * along;
-  marks.solids.push_back(cone(grip, tip, kWidth, kJointColour));
-  marks.solids.push_back(rod(grip, tip + kLength * along, kWidth, kArmColour));
+  marks.solids.push_back(cone(grip, tip, kWidth, moment.joint_colour()));
+  marks.solids.push_back(rod(grip, tip + kLength * along, kWidth, moment.arm_colour()));
   marks.solids.push_back(
-      ball(tip + 3 * kPoint * along + kWidth * R_WT.col(2), kButton, kTipColour));
+      ball(tip + 3 * kPoint * along + kWidth * R_WT.col(2), kButton, moment.tip_colour()));
 }
 
 /// Returns where the tip is drawn: at the proxy on a stiff surface; on a dented one, where it is.
@@ -91,12 +106,12 @@ void add_force(const DrawnScene& scene, const OneArm& moment, double thick, Touc
   const double length = std::max(arrow_length(size, scene), 6 * thick);
   const Point neck = from + std::max(length - 5 * thick, 0.4 * length) * along;
   const Point tip = from + length * along;
-  for (Solid part :
-       {rod(from, neck, thick, kForceColour), cone(neck, tip, 2.4 * thick, kForceColour)}) {
+  for (Solid part : {rod(from, neck, thick, moment.force_colour()),
+                     cone(neck, tip, 2.4 * thick, moment.force_colour())}) {
     part.shines_through = moment.force_shines;
     marks.solids.push_back(part);
   }
-  marks.labels.push_back({tip, along, fmt::format("{:.2f} N", size), kForceColour});
+  marks.labels.push_back({tip, along, fmt::format("{:.2f} N", size), moment.force_colour()});
 }
 
 // Adds the normal as a thin arrow of fixed length, and the tangential force (friction, textures) at
@@ -126,16 +141,16 @@ void add_tip(const OneArm& moment, double thick, TouchMarks& marks) {
   if (!p_WT.allFinite()) return;
   const Point centre = drawn_tip(moment);
   if (moment.tip_radius > 0 && centre.allFinite()) {
-    marks.solids.push_back(ball(centre, moment.tip_radius, kJointColour));
+    marks.solids.push_back(ball(centre, moment.tip_radius, moment.joint_colour()));
   }
-  Solid tip = ball(p_WT, 1.8 * thick, kTipColour);
+  Solid tip = ball(p_WT, 1.8 * thick, moment.tip_colour());
   tip.shines_through = true;
   marks.solids.push_back(tip);
   const Point p_WP = touched_point(moment);
   if (!moment.tick.in_contact || !p_WP.allFinite()) return;
-  marks.solids.push_back(ball(p_WP, 1.7 * thick, kProxyColour));
+  marks.solids.push_back(ball(p_WP, 1.7 * thick, moment.proxy_colour()));
   if ((centre - p_WT).norm() < 1e-6) return;
-  Solid link = rod(p_WT, centre, 0.5 * thick, kTipColour);
+  Solid link = rod(p_WT, centre, 0.5 * thick, moment.tip_colour());
   link.shines_through = true;
   marks.solids.push_back(link);
 }
@@ -215,20 +230,21 @@ TouchMarks mark_touch(const DrawnScene& scene, const DrawnMoment& moment, double
   const auto add = [&](const OneArm& arm, const std::string& name) {
     if (choice.arm) add_arm(arm, marks);
     if (choice.arm) add_stylus(arm, marks);
-    if (choice.force) add_force(scene, arm, thick, marks);
-    if (choice.contact) add_contact(scene, arm, thick, marks);
+    if (choice.force && !arm.look.ended) add_force(scene, arm, thick, marks);
+    if (choice.contact && !arm.look.ended) add_contact(scene, arm, thick, marks);
     if (choice.tip) add_tip(arm, thick, marks);
     const Point tip = point(arm.tick.p_WT);
     if (choice.tip && !name.empty() && tip.allFinite()) {
       const Point up(0, 0, 1);
-      marks.labels.push_back({tip + 6 * thick * up, up, name, kTipColour});
+      marks.labels.push_back({tip + 6 * thick * up, up, name, arm.tip_colour()});
     }
   };
   const bool bent = moment.patch.triangle_count > 0 && moment.patch.object == moment.tick.object;
   const bool several = !moment.others.empty();
-  add({moment.tick, moment.arm, bent, scene.tip_radius, several}, scene.arm_in_scene);
-  for (const DrawnArm& other : moment.others)
-    add({other.tick, other.rods, false, scene.tip_radius, several}, other.name);
+  add({moment.tick, moment.arm, bent, scene.tip_radius, several, moment.look}, scene.arm_in_scene);
+  for (const DrawnArm& other : moment.others) {
+    add({other.tick, other.rods, false, scene.tip_radius, several, other.look}, other.name);
+  }
   if (choice.edge_planes) add_edge_planes(scene, moment, marks);
   return marks;
 }

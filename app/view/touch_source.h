@@ -10,6 +10,8 @@
 
 namespace thimble::view {
 
+struct Comparison;
+
 /// The content of a window over time: live runs or a recording. Real-time: never from the servo
 /// thread.
 class TouchSource {
@@ -43,6 +45,9 @@ class TouchSource {
   virtual std::string kept() const = 0;
   /// Returns sentences that describe a recording and what it lacks; empty for a run.
   virtual const std::vector<std::string>& about() const = 0;
+  /// Returns the recordings and signals on one time line (compare/comparison.h); null if a run or
+  /// one recording is shown.
+  virtual Comparison* comparison() { return nullptr; }
 };
 
 }  // namespace thimble::view

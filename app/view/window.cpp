@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "view/compare/runs_player.h"
 #include "view/content/content.h"
 #include "view/content/window_loop.h"
 #include "view/playback/recording_player.h"
@@ -9,7 +10,7 @@
 namespace thimble::view {
 namespace {
 
-driver::Result<void> show(RecordingPlayer& source, const WindowChoice& choice) {
+driver::Result<void> show(TouchSource& source, const WindowChoice& choice) {
   auto screen = Screen::open();
   if (!screen) return screen.error();
   Content content(**screen, source, choice);
@@ -26,6 +27,13 @@ driver::Result<void> show_recording(const RecordingView& recording, const std::s
                                     const WindowChoice& choice) {
   RecordingPlayer player(recording, std::filesystem::path(file).stem());
   if (choice.at >= 0) player.head().stop_at(player.head().begin() + choice.at);
+  return show(player, choice);
+}
+
+driver::Result<void> show_recordings(RecordedRuns& runs, const std::string& name,
+                                     const WindowChoice& choice) {
+  RunsPlayer player(runs, name);
+  if (choice.at >= 0) player.head().stop_at(choice.at);
   return show(player, choice);
 }
 

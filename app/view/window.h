@@ -26,4 +26,11 @@ struct WindowChoice {
 driver::Result<void> show_recording(const RecordingView& recording, const std::string& file,
                                     const WindowChoice& choice);
 
+class RecordedRuns;
+
+/// As `show_recording`, for several recordings and own signals on one time line. `name` is used for
+/// the names of its pictures.
+driver::Result<void> show_recordings(RecordedRuns& runs, const std::string& name,
+                                     const WindowChoice& choice);
+
 }  // namespace thimble::view

@@ -11,6 +11,7 @@
 #include <ctime>
 
 #include "log/logger.h"
+#include "view/compare/run_list.h"
 #include "view/gl/picture_file.h"
 #include "view/overlays/legend.h"
 #include "view/overlays/off_picture.h"
@@ -156,7 +157,12 @@ void Content::draw_scene(const ScreenPart& part, int below, float ratio) {
   canvas_->show(0, below);
   const Theme theme = choice_.paint.theme;
   write_labels(labels, camera_, theme, part);
-  notes_.legend = write_legend(legend_of(source_.scene(), moment, choice_.paint), theme, part);
+  Legend legend = legend_of(source_.scene(), moment, choice_.paint);
+  if (const Comparison* const runs = source_.comparison()) {
+    const auto lines = run_lines(*runs);
+    legend.lines.insert(legend.lines.begin(), lines.begin(), lines.end());
+  }
+  notes_.legend = write_legend(legend, theme, part);
   if (source_.has_moment()) draw_arrow_to_tip(camera_, p_WT, theme, part);
   write_caption(choice_.paint.grid ? "grid 10 mm; F1: help" : "F1: help", theme, part);
   if (choice_.screenshot) take_picture();

@@ -3,7 +3,10 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <set>
+#include <string>
 
+#include "view/compare/comparison.h"
 #include "view/playback/plots.h"
 
 namespace thimble::view {
@@ -14,6 +17,8 @@ struct PlotTime {
   bool recorded = false;               ///< The data are a complete recording.
   std::int64_t period_ns = 1'000'000;  ///< Period of the loop.
   double duration = 0;                 ///< Planned duration of the run, s; 0: unknown.
+  /// Several recordings and own signals, drawn instead of the plots of one run; null: none.
+  const Comparison* compared = nullptr;
 };
 
 /// Plots below each other over the same time: mouse actions apply to all of them.
@@ -36,12 +41,20 @@ class PlotPanel {
   bool is_zoomed() const { return zoom_.has_value(); }
 
  private:
-  void draw_choice();
-  void draw_one(const Plots& plots, const PlotTime& time, const ScreenPart& part, Channel channel,
-                bool last);
+  /// One plot: a channel, or an own signal.
+  struct Row {
+    Channel channel = Channel::kForce;
+    const ComparedSignal* signal = nullptr;  // null: the channel
+  };
+  std::vector<Row> rows(const PlotTime& time) const;
+  bool shows_periods(const PlotTime& time) const;
+  void draw_choice(const PlotTime& time);
+  void draw_row(const Plots& plots, const PlotTime& time, const ScreenPart& part, const Row& row,
+                int id, bool last);
   void use_mouse(const ScreenPart& inner, const TimeRange& range, const TimeRange& all);
 
   std::array<bool, kChannels> shown_{true, true, true, false, false, false, false, false};
+  std::set<std::string> hidden_;  // names of own signals
   bool periods_ = true;
   std::optional<TimeRange> zoom_;
   std::optional<double> cursor_, next_cursor_;  // s; cursor of the last picture and of this one

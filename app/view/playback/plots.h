@@ -8,7 +8,8 @@
 #include <optional>
 
 #include "thimble/driver/tick_record.h"
-#include "view/playback/axis_ticks.h"
+#include "view/playback/curve.h"
+#include "view/playback/curve_plot.h"
 #include "view/text_style.h"
 
 struct ImDrawList;
@@ -30,13 +31,9 @@ inline constexpr std::size_t kChannels = 8;
 
 /// Returns the name of a channel.
 const char* name_of(Channel channel) noexcept;
-
-/// A range of the time of a run, s.
-struct TimeRange {
-  double begin = 0, end = 0;
-
-  double width() const { return end - begin; }
-};
+/// Returns how a channel is drawn, and its colour if there is one run.
+const CurveLook& look_of(Channel channel);
+Colour colour_of_channel(Channel channel);
 
 /// Returns `range` scaled by `factor` about `at`, within `all`. It does not become narrower than
 /// 0.1 ms, because the numbers at its axis could not be distinguished.
@@ -75,20 +72,22 @@ class Plots {
   std::optional<double> value_at(Channel channel, double time) const;
 
   /// The smallest and the largest value of a channel, SI.
-  struct Extent {
-    float min = std::numeric_limits<float>::infinity();
-    float max = -std::numeric_limits<float>::infinity();
-    bool empty() const { return max < min; }
-  };
+  using Extent = view::Extent;
   /// Returns the extent within a range of time, including its ends.
   Extent extent(Channel channel, const TimeRange& range) const;
 
-  /// Marks in a plot in addition to its line.
-  struct Marks {
-    std::optional<double> cursor;  ///< Time of the mouse, s, whose value is shown.
-    std::optional<double> looked;  ///< The moment that is shown, s.
-    bool times = true;             ///< Whether the numbers of the time axis are drawn.
-  };
+  // The samples of the kept ticks, oldest first.
+  std::size_t size() const { return samples_.size(); }
+  /// Returns the time of a sample, s.
+  double time(std::size_t i) const { return samples_[i].time; }
+  /// Returns a channel's value (SI) of a sample.
+  float value(Channel channel, std::size_t i) const {
+    return samples_[i].value[static_cast<std::size_t>(channel)];
+  }
+  /// Returns the extent of the samples from `from` up to, and without, `to`.
+  Extent extent(Channel channel, std::size_t from, std::size_t to) const;
+
+  using Marks = PlotMarks;
 
   // Call between ImGui's NewFrame and Render.
 
@@ -99,9 +98,10 @@ class Plots {
   /// Draws a histogram of the loop's periods about the nominal one (ns).
   void draw_periods(ImDrawList& list, const ScreenPart& part, const TimeRange& range,
                     std::int64_t period_ns) const;
-  /// Returns the area of the lines in `part`: right of the numbers, below the title. `times` as in
-  /// Marks.
-  static ScreenPart lines_of(const ScreenPart& part, bool times);
+  /// As view::lines_of.
+  static ScreenPart lines_of(const ScreenPart& part, bool times) {
+    return view::lines_of(part, times);
+  }
 
  private:
   struct Sample {
@@ -114,9 +114,6 @@ class Plots {
   using Block = std::array<Extent, kChannels>;
 
   std::size_t first_at(double time) const;  // index of the first sample that is not earlier
-  Extent extent(Channel channel, std::size_t from, std::size_t to) const;
-  void draw_line(ImDrawList& list, const ScreenPart& inner, Channel channel, const TimeRange& range,
-                 const AxisTicks& axis, double per_si) const;
 
   double seconds_ = kSeconds;
   std::size_t samples_max_ = kSamplesMax;

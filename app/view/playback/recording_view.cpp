@@ -47,17 +47,31 @@ render::BodyPose between(const render::BodyPose& a, const render::BodyPose& b, d
 
 }  // namespace
 
-driver::Result<std::unique_ptr<RecordingView>> RecordingView::open(
+driver::Result<std::vector<session::Recording>> read_recordings(
     const std::vector<std::filesystem::path>& files) {
-  std::unique_ptr<RecordingView> view(new RecordingView);
+  std::vector<session::Recording> recordings;
   for (const std::filesystem::path& file : files) {
     auto read = session::read_recording(file);
     if (!read) return read.error();
     if (read->ticks.empty()) {
       return driver::Error{file.string() + ": the recording has no ticks."};
     }
-    view->arms_.push_back(std::move(read).value());
+    recordings.push_back(std::move(read).value());
   }
+  return recordings;
+}
+
+driver::Result<std::unique_ptr<RecordingView>> RecordingView::open(
+    const std::vector<std::filesystem::path>& files) {
+  auto recordings = read_recordings(files);
+  if (!recordings) return recordings.error();
+  return of(std::move(recordings).value());
+}
+
+driver::Result<std::unique_ptr<RecordingView>> RecordingView::of(
+    std::vector<session::Recording> recordings) {
+  std::unique_ptr<RecordingView> view(new RecordingView);
+  view->arms_ = std::move(recordings);
   if (auto touched = view->touch_again(); !touched) return touched.error();
   return view;
 }
@@ -122,6 +136,10 @@ double RecordingView::time_of_step(double time, int steps) const {
   return 1e-9 * static_cast<double>(ticks()[place].time_ns);
 }
 
+const driver::TickRecord& RecordingView::tick_at_time(double time) const {
+  return ticks()[tick_at(arms_.front().ticks, in_ns(time))];
+}
+
 void RecordingView::show_bodies(std::int64_t time_ns, DrawnMoment& moment) const {
   moment.poses.assign(drawn_.objects.size(), {});
   const session::BodyTrace* const bodies = film_.bodies();
@@ -178,13 +196,20 @@ void RecordingView::show(double time, DrawnMoment& moment) const {
     moment.shapes[i] = film_.shape_at(i, moment.tick.time_ns);
   }
   moment.arm = rods_of(shared_.arms.front(), moment.tick);
-  moment.others.resize(arms() - 1);
-  for (std::size_t i = 0; i + 1 < arms(); ++i) {
-    DrawnArm& other = moment.others[i];
-    other.name = shared_.arms[i + 1].in_scene;
-    other.tick = ticks(i + 1)[tick_at(arms_[i + 1].ticks, time_ns)];
-    other.rods = rods_of(shared_.arms[i + 1], other.tick);
-  }
+  moment.others.clear();
+  for (std::size_t i = 1; i < arms(); ++i) moment.others.push_back(arm_at(i, time_ns));
+}
+
+DrawnArm RecordingView::arm_at(std::size_t arm, std::int64_t time_ns) const {
+  DrawnArm drawn;
+  drawn.name = shared_.arms[arm].in_scene;
+  drawn.tick = ticks(arm)[tick_at(arms_[arm].ticks, time_ns)];
+  drawn.rods = rods_of(shared_.arms[arm], drawn.tick);
+  return drawn;
+}
+
+void RecordingView::add_arms(double time, std::vector<DrawnArm>& arms) const {
+  for (std::size_t i = 0; i < arms_.size(); ++i) arms.push_back(arm_at(i, in_ns(time)));
 }
 
 }  // namespace thimble::view

@@ -10,6 +10,8 @@
 #include <array>
 #include <cmath>
 
+#include "view/compare/comparison.h"
+#include "view/playback/channel_curve.h"
 #include "view/run_buttons.h"
 
 namespace thimble::view {
@@ -154,9 +156,39 @@ bool one_row(float width) {
   return width >= kOneRow * ImGui::GetFontSize();
 }
 
+/// Marks the times with contact.
+void draw_contacts(const ScreenPart& part, const Curve& depth, const PlayHead& head,
+                   const Colour& colour) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto columns = static_cast<int>(part.width);
+  for (int i = 0; i < columns; ++i) {
+    const double width = (head.end() - head.begin()) / columns;
+    const double begin = head.begin() + width * i;
+    const Extent extent = depth.extent(TimeRange{begin, begin + width});
+    if (extent.empty() || !(extent.max > 0)) continue;
+    const float x = part.x + static_cast<float>(i);
+    list.AddRectFilled({x, part.y}, {x + 1, part.y + part.height}, packed(colour, 0.45F));
+  }
+}
+
+/// Draws each recording in a lane: as long as it lasts, with its times of contact.
+void draw_runs(const ScreenPart& part, const Comparison& runs, const PlayHead& head) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float lane = part.height / static_cast<float>(runs.runs.size());
+  const double span = head.end() - head.begin();
+  for (std::size_t i = 0; i < runs.runs.size(); ++i) {
+    const ComparedRun& run = runs.runs[i];
+    const Colour colour = runs.several() ? run.colour : kDepthColour;
+    const ScreenPart own{part.x, part.y + lane * static_cast<float>(i), part.width, lane};
+    const auto share = static_cast<float>((run.end - head.begin()) / span);
+    list.AddRectFilled({own.x, own.y}, {own.x + share * own.width, own.y + lane},
+                       packed(colour, 0.2F));
+    draw_contacts(own, ChannelCurve(*run.plots, Channel::kDepth, run.offset), head, colour);
+  }
+}
+
 void draw_bar(const ScreenPart& bar, TouchSource& source) {
   PlayHead& head = source.head();
-  const Plots& plots = source.plots();
   const std::string kept = source.kept();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImGui::SetCursorScreenPos({bar.x, bar.y});
@@ -175,15 +207,11 @@ void draw_bar(const ScreenPart& bar, TouchSource& source) {
   list.AddRectFilled({bar.x, middle - half}, {bar.x + bar.width, middle + half},
                      packed(kGridColour, 0.35F), round);
   if (!(span > 0)) return;
-  // Times with contact.
-  const auto columns = static_cast<int>(bar.width);
-  for (int i = 0; i < columns; ++i) {
-    const double width = span / columns;
-    const double begin = head.begin() + width * i;
-    const Plots::Extent depth = plots.extent(Channel::kDepth, {begin, begin + width});
-    if (depth.empty() || !(depth.max > 0)) continue;
-    const float x = bar.x + static_cast<float>(i);
-    list.AddRectFilled({x, middle - half}, {x + 1, middle + half}, packed(kDepthColour, 0.45F));
+  if (const Comparison* const runs = source.comparison()) {
+    draw_runs({bar.x, middle - half, bar.width, 2 * half}, *runs, head);
+  } else {
+    draw_contacts({bar.x, middle - half, bar.width, 2 * half},
+                  ChannelCurve(source.plots(), Channel::kDepth), head, kDepthColour);
   }
   const auto share = static_cast<float>((head.time() - head.begin()) / span);
   const float x = bar.x + share * bar.width;

@@ -117,5 +117,22 @@ TEST_F(PlotPanelUsed, FollowsRunUnlessLookingBack) {
   EXPECT_NEAR(range().end, 10, 1e-9);
 }
 
+TEST_F(PlotPanelUsed, ShowsTheWholeTimeLineOfSeveralRecordings) {
+  Comparison comparison;
+  comparison.runs.resize(2);
+  for (ComparedRun& run : comparison.runs) run.plots = &plots;
+  comparison.span = {0, 20};
+  time.compared = &comparison;
+  EXPECT_EQ(range().end, 20);
+  rest(at(4));
+  look(at(4), true);  // at 8 s of 20 s
+  look(at(4), false);
+  ASSERT_TRUE(asked);
+  EXPECT_NEAR(*asked, 8, 0.1);
+  look(at(4), false, 1);
+  EXPECT_NEAR(range().begin, 8 - 0.8 * 8, 0.1);
+  EXPECT_NEAR(range().end, 8 + 0.8 * 12, 0.1);
+}
+
 }  // namespace
 }  // namespace thimble::view

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -75,6 +76,30 @@ TEST(TouchMarks, ForcesOfSeveralArmsShineThroughObjects) {
   };
   EXPECT_EQ(shine(false), 0U);
   EXPECT_EQ(shine(true), 4U);  // a rod and a cone for each arm
+}
+
+TEST(TouchMarks, ArmsOfSeveralRecordingsHaveTheirColours) {
+  const Colour blue = colour_of(0x0072B2);
+  const Colour red = colour_of(0xD55E00);
+  DrawnMoment moment;
+  moment.tick.f_sent_W = {0, 0, 2};
+  moment.look.colour = blue;
+  DrawnArm& other = moment.others.emplace_back();
+  other.tick.f_sent_W = {0, 1, 0};
+  other.look.colour = red;
+  const MarkChoice tips{.arm = false};
+  const auto count = [&](const Colour& colour) {
+    const auto marks = mark_touch({}, moment, 1, tips);
+    return std::count_if(marks.solids.begin(), marks.solids.end(),
+                         [&](const Solid& solid) { return solid.colour == colour; }) +
+           std::count_if(marks.labels.begin(), marks.labels.end(),
+                         [&](const Label& label) { return label.colour == colour; });
+  };
+  EXPECT_EQ(count(blue), 4);  // rod and cone of the force, tip and number
+  EXPECT_EQ(count(red), 4);
+  other.look.ended = true;  // only its tip is left
+  EXPECT_EQ(count(blue), 4);
+  EXPECT_EQ(count(red), 1);
 }
 
 TEST(TouchMarks, ShowNormalAndTangentialForce) {
