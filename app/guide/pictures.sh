@@ -70,6 +70,16 @@ XDG_STATE_HOME=$work XDG_DATA_HOME=$work XDG_CACHE_HOME=$work xvfb-run -a -s "-s
 ffmpeg -loglevel error -y -i start_all.png -filter_complex "scale=960:-1,split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=none" \
   -frames:v 1 "$pictures/start_window.png"
 
+# Two recordings and a signal in one window.
+"$program" run "$scenes/rubber.yaml" --record stiff.h5 >/dev/null
+sed -e 's/stiffness: 400/stiffness: 200/' -e 's/^duration: 6/duration: 5/' -e 's/press: 0.006/press: 0.012/' "$scenes/rubber.yaml" >soft.yaml
+"$program" run soft.yaml --record soft.h5 >/dev/null
+awk 'BEGIN { print "time, muscle [mV]"; srand(1); for (i = 0; i < 6000; ++i) { t = i / 1000; print t ", " 0.4 * (rand() - 0.5) * (0.3 + (t > 0.9 && t < 4.9)) } }' >muscle.csv
+xvfb-run -a -s "-screen 0 1280x800x24" "$program" view stiff.h5 soft.h5 --signals muscle.csv --at 1.9 --for 5 \
+  --picture compare_all.png 2>/dev/null
+ffmpeg -loglevel error -y -i compare_all.png -filter_complex "scale=960:-1,split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=none" \
+  -frames:v 1 "$pictures/compare.png"
+
 # The page of an identified arm, down to its first plot.
 "$program" identify --device sim --arm woodenhaptics --known-mass 0.03 --report my_arm >/dev/null
 chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --window-size=900,1490 \
