@@ -58,10 +58,10 @@ unsigned nearer_of_eight(const NearestInUnits& nearest, const Eigen::Vector3d& f
                          const EightTriangles& eight) noexcept;
 
 /// Measures the distances of the triangles in the lanes `there` from `from` (relative to the
-/// middle, in units). Lowers `nearest` if one of them is nearer, and writes to `low` a distance that
-/// each triangle is surely not nearer than. Returns bit i for each of these lanes whose triangle may
-/// have the closest point. `low` has eight elements aligned to 32 bytes. Real-time: safe; about 30
-/// ns.
+/// middle, in units). Lowers `nearest` if one of them is nearer, and writes to `low` a distance
+/// that each triangle is surely not nearer than. Returns bit i for each of these lanes whose
+/// triangle may have the closest point. `low` has eight elements aligned to 32 bytes. Real-time:
+/// safe; about 30 ns.
 unsigned measure_eight(NearestInUnits& nearest, const Eigen::Vector3d& from,
                        const EightTriangles& eight, unsigned there, float* low) noexcept;
 
