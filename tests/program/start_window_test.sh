@@ -141,13 +141,17 @@ closes
 expect_own 0 '' wait_for 10 no_run_listed short
 cp short.yaml typed.yaml
 open_window
-sleep 2
-click 300 87 # the field
-xdotool type --delay 40 "$work/typed.yaml"
-press Return
-sleep 1
-press Return
-expect_own 0 '' wait_for 60 run_listed typed
+# A slow machine may lose a click or a key.
+types_path() {
+  click 300 87 # the field
+  press ctrl+a
+  xdotool type --delay 100 "$work/typed.yaml"
+  press Return
+  sleep 3
+  press Return
+  wait_for 20 run_listed typed
+}
+expect_own 0 '' wait_for 90 types_path
 closes
 expect_own 0 '' wait_for 10 no_run_listed typed
 expect_own 0 '/typed.yaml$' cat "$XDG_STATE_HOME/thimble/recent_scenes"

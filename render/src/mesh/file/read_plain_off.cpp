@@ -33,7 +33,8 @@ class PlainLines {
       const Digits part = take_digits();
       decimals = part.count;
       count += decimals;
-      if (count <= kDigitsMax) digits = digits * kWholePowers[decimals] + part.value;
+      if (count <= kDigitsMax)
+        digits = digits * static_cast<std::uint64_t>(kWholePowers[decimals]) + part.value;
     }
     if (count > 0 && count <= kDigitsMax && ends_word()) {
       // Signed, because that conversion is one instruction.
