@@ -45,7 +45,9 @@ driver::Result<std::unique_ptr<Screen>> Screen::open() {
   glfwSetWindowUserPointer(screen->window_, screen.get());
   glfwSetKeyCallback(screen->window_, [](GLFWwindow* window, int key, int, int action, int) {
     auto* self = static_cast<Screen*>(glfwGetWindowUserPointer(window));
-    if (action == GLFW_PRESS) self->keys_.push_back(key);
+    if (action != GLFW_PRESS) return;
+    self->keys_.push_back(key);
+    self->pressed_.push_back(key);
   });
   glfwSetDropCallback(screen->window_, [](GLFWwindow* window, int count, const char** paths) {
     auto* self = static_cast<Screen*>(glfwGetWindowUserPointer(window));
@@ -78,8 +80,30 @@ std::vector<std::string> Screen::take_drops() {
   return std::exchange(drops_, {});
 }
 
-void Screen::begin(Theme theme) {
+// ImGui before 1.87 sees only which keys are down when a picture begins. A key that was pressed and
+// released since the last picture is therefore down in this one.
+void Screen::poll_events() {
+#if IMGUI_VERSION_NUM < 18700
+  ImGuiIO& io = ImGui::GetIO();
+  for (const int key : std::exchange(short_, {})) io.KeysDown[key] = false;
   glfwPollEvents();
+  for (const int key : std::exchange(pressed_, {})) {
+    if (key < 0 || key >= IM_ARRAYSIZE(io.KeysDown) || io.KeysDown[key]) continue;
+    io.KeysDown[key] = true;
+    short_.push_back(key);
+  }
+  const auto down = [&io](int left, int right) { return io.KeysDown[left] || io.KeysDown[right]; };
+  io.KeyCtrl = down(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+  io.KeyShift = down(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+  io.KeyAlt = down(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+#else
+  glfwPollEvents();
+  pressed_.clear();
+#endif
+}
+
+void Screen::begin(Theme theme) {
+  poll_events();
   float x = 1;
   float y = 1;
   glfwGetWindowContentScale(window_, &x, &y);

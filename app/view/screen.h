@@ -40,6 +40,7 @@ class Screen {
 
  private:
   Screen() = default;
+  void poll_events();
 
   bool glfw_ = false;
   bool imgui_ = false;
@@ -48,6 +49,8 @@ class Screen {
   float wanted_scale_ = 0;  // 0: the monitor's
   Theme theme_ = Theme::kLight;
   std::vector<int> keys_;
+  std::vector<int> pressed_;  // since the last picture
+  std::vector<int> short_;    // down in this picture only
   std::vector<std::string> drops_;
 };
 
