@@ -31,6 +31,9 @@ std::string time_text(std::filesystem::file_time_type time) {
 
 int list_cache(bool clear) {
   const std::filesystem::path folder = scene::chosen_mesh_cache();
+  if (const auto readable = scene::check_cache_folder(folder); !readable) {
+    return report_error(readable.error(), kExitTrouble);
+  }
   const auto entries = scene::cache_entries(folder);
   std::uint64_t bytes = 0;
   for (const scene::EntryFile& entry : entries) {

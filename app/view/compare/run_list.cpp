@@ -62,8 +62,8 @@ void draw_run_list(Comparison& comparison) {
       if (ImGui::IsItemHovered()) ImGui::SetTooltip("Draws the scene of this recording");
       ImGui::SameLine(0, 0.4F * ImGui::GetFontSize());
     }
-    draw_swatch(run.ended ? ended_colour(run.colour) : run.colour,
-                choose ? ImGui::GetStyle().FramePadding.y : 0);
+    // The colour of its curves, also after its end.
+    draw_swatch(run.colour, choose ? ImGui::GetStyle().FramePadding.y : 0);
     if (choose) ImGui::AlignTextToFramePadding();
     const std::string state = state_of(run);
     const float right = ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(state.c_str()).x;

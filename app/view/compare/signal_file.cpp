@@ -62,6 +62,10 @@ std::string shown_cell(std::string_view cell) {
   return '"' + text + (cell.size() > kMax ? "...\"" : "\"");
 }
 
+// As the longest run.
+constexpr double kLatest = 86400;  // s
+constexpr double kLargest = std::numeric_limits<float>::max();
+
 /// Splits "name [unit]".
 std::pair<std::string, std::string> name_and_unit(std::string_view cell) {
   const std::size_t open = cell.rfind('[');
@@ -200,6 +204,12 @@ class SignalReader {
     const auto time = number_in(cells_.front());
     if (!time) return not_a_number(0);
     const double seconds = per_unit_ * *time;
+    if (!(std::abs(seconds) <= kLatest)) {
+      return at_line(
+          fmt::format("the time {} is farther than {} s from the first tick. Count the time from "
+                      "there.",
+                      shown_cell(cells_.front()), kLatest));
+    }
     if (!time_.empty() && !(seconds >= time_.back())) {
       return at_line(
           fmt::format("the time {} is earlier than that of the line before. Sort the "
@@ -208,8 +218,12 @@ class SignalReader {
     }
     for (std::size_t k = 1; k < columns_; ++k) {
       const auto value = number_in(cells_[k]);
-      constexpr double kMax = std::numeric_limits<float>::max();
-      if (!value || !(std::abs(*value) <= kMax)) return not_a_number(k);
+      if (!value) return not_a_number(k);
+      if (!(std::abs(*value) <= kLargest)) {
+        return at_line(fmt::format("{}: {} is larger than {:.2g}. Use a larger unit.",
+                                   shown_cell(signals_.signals[k - 1].name), shown_cell(cells_[k]),
+                                   kLargest));
+      }
       signals_.signals[k - 1].values.push_back(static_cast<float>(*value));
     }
     time_.push_back(seconds);

@@ -13,6 +13,7 @@
 #include "thimble/render/mesh/check_mesh.h"
 #include "thimble/render/mesh/mesh_file.h"
 #include "thimble/scene/scene_file.h"
+#include "thimble/scene/shipped_files.h"
 #include "user_folders.h"
 
 namespace thimble::view {
@@ -146,7 +147,14 @@ driver::Result<fs::path> save_mesh_scene(const MeshScene& scene, const std::stri
                                  [](unsigned char letter) { return std::isspace(letter) != 0; });
   if (blank) return driver::Error{"The name is empty. Type a name for the scene."};
   const fs::path folder = scene::data_folder() / "scenes";
-  const fs::path file = folder / (scene::as_file_name(name) + ".yaml");
+  const std::string stem = scene::as_file_name(name);
+  const fs::path file = folder / (stem + ".yaml");
+  // A scene of the user takes precedence over one of Thimble with its name.
+  for (const scene::ShippedFile& known : scene::shipped_scenes()) {
+    if (known.name == stem && known.path.parent_path() != folder) {
+      return driver::Error{"Thimble has a scene " + stem + ". Choose another name."};
+    }
+  }
   std::error_code status;
   fs::create_directories(folder, status);
   if (fs::exists(file, status)) {

@@ -577,6 +577,8 @@ TEST_F(MeshCacheTest, EnvironmentSelectsTheFolder) {
   EXPECT_EQ(scene::chosen_mesh_cache(), scene::default_mesh_cache());
   setenv(name, "", 1);
   EXPECT_FALSE(scene::mesh_cache_of_environment());
+  setenv(name, "0", 1);
+  EXPECT_FALSE(scene::mesh_cache_of_environment());
   setenv(name, "1", 1);
   EXPECT_EQ(scene::mesh_cache_of_environment(), scene::default_mesh_cache());
   setenv(name, "relative", 1);

@@ -93,7 +93,10 @@ TEST(SignalFile, ErrorNamesLineAndProblem) {
   expect_error("time,a\n0,1\n0.5,1\n0.4,1\n", 4, {"\"0.4\"", "earlier", "Sort"});
   expect_error("time,a\n0,nan\n", 2, {"\"a\"", "\"nan\"", "finite"});
   expect_error("time,a\n0,-inf\n", 2, {"\"-inf\"", "finite"});
-  expect_error("time,a\n0,1e39\n", 2, {"\"1e39\"", "finite"});
+  expect_error("time,a\n0,1e39\n", 2, {"\"1e39\"", "larger"});
+  expect_error("time,a\n86401,1\n", 2, {"\"86401\"", "86400 s"});
+  expect_error("time,a\n-86401,1\n", 2, {"\"-86401\"", "86400 s"});
+  expect_error("time [ms],a\n0,1\n1e300,1\n", 3, {"\"1e300\"", "86400 s"});
   expect_error("time,a\n0,1e999\n", 2, {"\"1e999\"", "finite"});
   expect_error("time,a\nnan,1\n", 2, {"\"time\"", "\"nan\""});
   expect_error("time,a\n0,\n", 2, {"\"\"", "finite"});

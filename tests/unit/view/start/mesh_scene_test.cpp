@@ -145,6 +145,10 @@ TEST(MeshScene, ReplacesNoFileWhenSaved) {
   EXPECT_NE(again.error().message.find("another name"), std::string::npos);
   EXPECT_EQ(text_of(*saved), "name: first\n");
   EXPECT_FALSE(save_mesh_scene({"part", "name: third\n", {}}, "  "));
+  // It would hide the scene of Thimble.
+  const auto taken = save_mesh_scene({"part", "name: fourth\n", {}}, "blocks");
+  ASSERT_FALSE(taken);
+  EXPECT_NE(taken.error().message.find("Thimble has a scene blocks"), std::string::npos);
 }
 
 }  // namespace

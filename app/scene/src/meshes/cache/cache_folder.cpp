@@ -59,11 +59,10 @@ fs::path default_mesh_cache() {
 
 std::optional<fs::path> mesh_cache_of_environment() {
   const char* const value = std::getenv(kCacheVariable);
-  if (value == nullptr || *value == 0) return {};
+  if (value == nullptr || *value == 0 || std::string_view(value) == "0") return {};
   if (std::string_view(value) == "1") return default_mesh_cache();
   if (fs::path folder = value; folder.is_absolute()) return folder;
-  logger().warn("{}={}: expected 1 or an absolute path; the mesh cache is off.", kCacheVariable,
-                value);
+  logger().warn("{}={}: expected 0, 1 or an absolute path. It is ignored.", kCacheVariable, value);
   return {};
 }
 
@@ -88,6 +87,17 @@ driver::Result<void> make_cache_folder(const fs::path& folder) {
         fmt::format("{} cannot be created ({})", folder.string(), failed.message())};
   }
   return {};
+}
+
+driver::Result<void> check_cache_folder(const fs::path& folder) {
+  std::error_code status;
+  if (!fs::exists(folder, status) && !status) return {};
+  if (!status) fs::directory_iterator(folder, status);
+  if (!status) return {};
+  return driver::Error{
+      fmt::format("{} cannot be read ({}). Set THIMBLE_MESH_CACHE to a folder "
+                  "of this user.",
+                  folder.string(), status.message())};
 }
 
 std::vector<EntryFile> cache_entries(const fs::path& folder) {

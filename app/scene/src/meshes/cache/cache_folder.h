@@ -19,7 +19,7 @@ namespace thimble::scene {
 THIMBLE_EXPORT std::filesystem::path default_mesh_cache();
 
 /// Returns the folder that THIMBLE_MESH_CACHE in the environment selects: 1 the default one, an
-/// absolute path that one. None if it is not set, empty, or something else, which is logged.
+/// absolute path that one. None if it is not set, empty, 0, or something else, which is logged.
 THIMBLE_EXPORT std::optional<std::filesystem::path> mesh_cache_of_environment();
 
 /// Returns the folder that is used if the cache is turned on: that of the environment, or the
@@ -31,6 +31,9 @@ std::filesystem::path entry_file(const std::filesystem::path& folder, std::strin
 
 /// Creates the folder if it does not exist, for its owner only.
 driver::Result<void> make_cache_folder(const std::filesystem::path& folder);
+
+/// Returns an error if the folder exists but cannot be read.
+THIMBLE_EXPORT driver::Result<void> check_cache_folder(const std::filesystem::path& folder);
 
 /// One entry of the folder.
 struct EntryFile {
