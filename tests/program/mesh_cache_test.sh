@@ -89,7 +89,7 @@ THIMBLE_MESH_CACHE=$work/own expect 0 '' "$thimble" run ring.yaml
 files 2 own
 THIMBLE_MESH_CACHE=1 expect 0 '' "$thimble" run ring.yaml
 files 2 home/thimble/prepared
-THIMBLE_MESH_CACHE=$work/ring.yaml expect_words 2 'ring.yaml read THIMBLE_MESH_CACHE' "$thimble" mesh cache --clear
+THIMBLE_MESH_CACHE=$work/ring.yaml expect_words 1 'ring.yaml read THIMBLE_MESH_CACHE' "$thimble" mesh cache --clear
 THIMBLE_MESH_CACHE=relative expect_words 0 'THIMBLE_MESH_CACHE=relative 1' "$thimble" run ring.yaml
 checks=$((checks + 1))
 [ ! -e relative ] || fail_check "a cache in a relative folder"
