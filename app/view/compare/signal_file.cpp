@@ -206,8 +206,8 @@ class SignalReader {
     const double seconds = per_unit_ * *time;
     if (!(std::abs(seconds) <= kLatest)) {
       return at_line(
-          fmt::format("the time {} is farther than {} s from the first tick. Count the time from "
-                      "there.",
+          fmt::format("the time {} is farther than {} s from the first tick. Subtract the time "
+                      "of the first tick from all.",
                       shown_cell(cells_.front()), kLatest));
     }
     if (!time_.empty() && !(seconds >= time_.back())) {
