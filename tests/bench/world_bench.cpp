@@ -240,7 +240,7 @@ driver::Result<Objects> load(const std::filesystem::path& file) {
   return scene::SceneObjects::build(*read);
 }
 
-/// Result of loading a scene in a process of its own.
+/// Result of loading a scene in a separate process.
 struct Load {
   double read = 0;    // s
   double build = 0;   // s

@@ -26,7 +26,7 @@ class HalfEdges {
             triangles.size(),
             vertices, [&triangles](std::size_t t) -> const auto& { return triangles[t]; }) {}
 
-  /// Takes triangles that are not in an array of their own. `corners_of(t)` returns the three
+  /// Takes triangles from a function instead of an array. `corners_of(t)` returns the three
   /// vertices of triangle `t`.
   template <class CornersOf>
   HalfEdges(std::size_t triangles, std::size_t vertices, const CornersOf& corners_of)
